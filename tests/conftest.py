@@ -166,4 +166,4 @@ def write_program(folder):
 def forgetful(monkeypatch):
     """Let a test ask servers anew, for a short time only."""
     monkeypatch.setattr(server, "_SOON", 20.0)
-    server._known.cache_clear()
+    server._remote_model.cache_clear()

@@ -154,6 +154,11 @@ class Output:
             return ~(((values >= 0) & (values <= LARGEST_VALUE)) | np.isposinf(values))
         return ~(np.abs(values) <= LARGEST_VALUE)
 
+    def is_invalid(self, values: NDArray[Any]) -> NDArray[np.bool_]:
+        """Return which values a model must not return: absent ones, but for a legitimate NaN."""
+        absent = self.is_absent(values)
+        return absent & ~np.isnan(values) if self.may_be_undefined else absent
+
     def absence(self, value: float) -> str:
         """Return why a value is absent, as the predicate of a sentence."""
         why = ""

@@ -28,7 +28,7 @@ class InputError(Exception):
 
 @contextmanager
 def first_fault_alone() -> Iterator[None]:
-    """Shorten what is wrong with a part of a result to one line: nobody edits it there.
+    """Shorten the faults of a part of a result to one line: nobody edits it there.
 
     Raises
     ------

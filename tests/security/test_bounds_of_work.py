@@ -17,7 +17,7 @@ from uq.execution import runner
 from uq.machines import program_outputs
 from uq.machines.machine_file import OutputTable, filled, read_machine
 from uq.machines.program_outputs import value_in
-from uq.machines.returned import WrongReturnError
+from uq.machines.returned import RowError
 from uq.render.figures.figure import replaced
 from uq.result.result_file import open_result
 from uq.stats.quantile_functions import negative_binomial
@@ -68,7 +68,7 @@ def test_a_format_and_a_pattern_that_explode_are_refused(folder, monkeypatch):
     assert filled("{load:12.6e}", {"load": 1.0}) == "1.000000e+00"
     monkeypatch.setattr(program_outputs, "_SEARCH_SECONDS", 0.2)
     (folder / "out").write_text("a" * 40 + "!")
-    with pytest.raises(WrongReturnError, match="takes too long"):
+    with pytest.raises(RowError, match="takes too long"):
         value_in(folder, "y", OutputTable(file="out", pattern="((?:a+)+)$"))
 
 
@@ -80,7 +80,7 @@ def test_a_pattern_that_explodes_is_ended_in_a_thread_too(folder, monkeypatch):
         life = threads.submit(value_in, folder, "y", OutputTable(file="out", pattern="= (.*)$"))
         assert life.result() == 2.5
         endless = OutputTable(file="out", pattern="((?:a+)+)$")
-        with pytest.raises(WrongReturnError, match="takes too long to search for"):
+        with pytest.raises(RowError, match="takes too long to search for"):
             threads.submit(value_in, folder, "y", endless).result()
 
 

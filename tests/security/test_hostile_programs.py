@@ -13,8 +13,7 @@ import pytest
 from own_machines import PAD, PAD_PROGRAM, run_program
 
 from uq.contract import Status
-from uq.machines import child_processes, program, row_folders
-from uq.machines.row_folders import Folders
+from uq.machines.row_folders import Folders, size_of
 from uq.study.installed_models import model_at
 
 
@@ -56,9 +55,10 @@ def test_a_hostile_program_costs_its_rows_only(uq, write_program, folder, line):
 
 def test_a_program_that_floods_the_disk_is_ended(write_program, folder, monkeypatch):
     write_program("#!/bin/sh\nexec head -c 10000000 /dev/zero\n")
-    monkeypatch.setattr(child_processes, "_adopting", True)
-    monkeypatch.setattr(child_processes, "LARGEST", 100_000)
-    monkeypatch.setattr(program, "end_descendants", lambda: None)  # those of this process
+    monkeypatch.setattr("uq.machines.child_processes._adopting", True)
+    monkeypatch.setattr("uq.machines.child_processes.LARGEST", 100_000)
+    # Those of this process are not ended.
+    monkeypatch.setattr("uq.machines.program.end_descendants", lambda: None)
     model = model_at("machine.toml")
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     try:
@@ -73,8 +73,8 @@ def test_a_program_that_floods_the_disk_is_ended(write_program, folder, monkeypa
 def test_a_program_that_fills_the_disk_with_files_is_ended(write_program, monkeypatch):
     many = "i=0; while :; do head -c 9999 /dev/zero > f$i; i=$((i+1)); done"
     write_program(f"#!/bin/sh\n{many}\n")
-    monkeypatch.setattr(child_processes, "LARGEST", 1_000_000)
-    monkeypatch.setattr(program, "_LOOK_SECONDS", 0.1)
+    monkeypatch.setattr("uq.machines.child_processes.LARGEST", 1_000_000)
+    monkeypatch.setattr("uq.machines.program._LOOK_SECONDS", 0.1)
     model = model_at("machine.toml")
     x, seed = np.array([[1.0, 3.0]]), np.zeros(1, np.uint64)
     _, status, messages = model.batch(x, seed, model.settings())
@@ -83,14 +83,14 @@ def test_a_program_that_fills_the_disk_with_files_is_ended(write_program, monkey
 
 
 def test_of_many_failed_rows_little_is_kept(folder, monkeypatch):
-    monkeypatch.setattr(row_folders, "_MOST_KEPT", 5000)
+    monkeypatch.setattr("uq.machines.row_folders._MOST_KEPT", 5000)
     with suppress(ValueError), Folders(folder / "rows").row([1.0]) as row_folder:
         for i in range(9):
             (row_folder / f"large{i}").write_bytes(bytes(1000))
         (row_folder / "small").write_bytes(bytes(10))
         raise ValueError
     (kept,) = (folder / "rows").iterdir()
-    assert (kept / "small").is_file() and 4000 < row_folders.size_of(kept) <= 5000
+    assert (kept / "small").is_file() and 4000 < size_of(kept) <= 5000
 
 
 def test_the_folder_of_a_row_that_no_longer_fails_is_removed(folder):

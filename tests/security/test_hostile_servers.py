@@ -15,7 +15,7 @@ from own_machines import run_server, run_server_here
 import uq as package
 from uq.contract import Status
 from uq.machines import um_bridge
-from uq.machines.row_by_row import OverdueError
+from uq.machines.returned import RowError
 
 
 @pytest.fixture
@@ -174,8 +174,9 @@ SLOWLY = {
 def test_an_answer_that_comes_byte_by_byte_is_waited_for_no_longer(hostile, what):
     base = hostile({"Evaluate": lambda count: SLOWLY[what]()}).rsplit("/", 1)[0]
     began = time.monotonic()
-    with pytest.raises(OverdueError, match="did not answer within 0.3 s"):
+    with pytest.raises(RowError, match="did not answer within 0.3 s") as caught:
         um_bridge.call(base, "Evaluate", {}, limit=0.3)
+    assert caught.value.status == Status.TIMED_OUT
     assert time.monotonic() - began < 4  # it never ends, or after five seconds
 
 

@@ -13,7 +13,7 @@ from uq.execution import runner
 from uq.files.netcdf_files import refuse_tricks
 from uq.machines.machine_file import OutputTable
 from uq.machines.program_outputs import value_in
-from uq.machines.returned import WrongReturnError
+from uq.machines.returned import RowError
 
 ROWS = 24
 ID = ctypes.c_int64
@@ -87,7 +87,7 @@ def test_a_file_that_reaches_beyond_itself_is_refused(uq, result, folder, write_
     ended = uq("check", study)
     assert ended.code == 2 and words in ended.err
     wanted = OutputTable(file="x.nc", netcdf="w")
-    with pytest.raises(WrongReturnError, match=words):
+    with pytest.raises(RowError, match=words):
         value_in(folder, "w", wanted)
 
 

@@ -18,7 +18,7 @@ from uq.contract import Model
 from uq.errors import InputError, described
 from uq.machines.child_processes import adopt, end_descendants
 from uq.machines.compilation import compilation
-from uq.machines.returned import WrongReturnError, as_plain, seen_in
+from uq.machines.returned import RowError, as_plain, seen_in
 from uq.machines.row_by_row import RowByRow
 from uq.study.evaluate import evaluate
 from uq.study.installed_models import code_of, model_at
@@ -184,7 +184,7 @@ def _probe(spec: ModelSpec) -> tuple[tuple[bool, bool], Answer]:
     def answer(row: list[float], seed: int) -> tuple[str, Any]:
         try:
             return DONE, as_plain(seen_in(batch.row(row, seed)))
-        except WrongReturnError as error:
+        except RowError as error:
             return DONE, str(error)
         except BaseException as error:
             return DONE, f"raised {described(error)}"

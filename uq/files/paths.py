@@ -6,7 +6,7 @@ from contextlib import suppress
 from errno import ENAMETOOLONG
 from pathlib import Path
 
-from uq.errors import InputError
+from uq.errors import InputError, nearest
 
 _KINDS = {
     stat.S_IFDIR: "a folder",
@@ -30,6 +30,23 @@ def node(path: Path) -> str:
         # a circular link does not exist for whoever follows it
         return "a link that leads nowhere" if Path(os.path.realpath(path)).is_symlink() else ""
     return "" if kind == stat.S_IFREG else _KINDS[kind]
+
+
+def file_there(path: Path) -> None:
+    """Refuse a path without a file.
+
+    Raises
+    ------
+    InputError
+        With the nearest name of a file of its kind.
+    """
+    if kind := node(path):
+        raise InputError(f"{path}: is {kind}, not a file")
+    if not path.is_file():
+        others = path.parent.glob(f"*{path.suffix}") if path.parent.is_dir() else []
+        raise InputError(
+            f"{path}: no such file{nearest(path.name, [other.name for other in others])}"
+        )
 
 
 def file_behind(path: Path, option: str = "-o") -> Path:

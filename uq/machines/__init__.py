@@ -5,12 +5,12 @@ Reading order; each part imports only those above it:
     child_processes    processes that a program leaves behind, ended with it
     compilation        notice when numba compiles, which may take a while
     returned           outputs of a function
-    json_requests      requests with JSON over HTTP
     row_folders        folders of rows
     row_by_row         rows computed one after the other by a function of numbers that returns
     compiled_function  a function compiled by numba as a machine
     machine_file       a machine file: a program, its input and its results, described in TOML
     um_bridge          the protocol of UM-Bridge models [1]_
+    json_requests      requests with JSON over HTTP
     function           a plain function as a machine
     fmu_description    description of an FMU [1]_, read by FMPy
     fmu_file           a machine file that names an FMU

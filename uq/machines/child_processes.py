@@ -1,4 +1,4 @@
-"""Processes that a program leaves behind, ended with it."""
+"""End of the processes that a program leaves behind."""
 
 import ctypes
 import os
@@ -35,7 +35,7 @@ def adopt() -> None:
 
 
 def judge() -> int:
-    """Return the process that decides what becomes of a row with which this process ends."""
+    """Return the process that keeps or removes the folder of a row that ends this process."""
     return _judge if _adopting else os.getpid()
 
 
@@ -81,7 +81,7 @@ def ended_within(process: subprocess.Popen[bytes], seconds: float) -> bool:
 
 
 def end_descendants() -> None:
-    """End what descends from this process, where it adopts; else do nothing."""
+    """End all descendants of this process, where it adopts; else do nothing."""
     if not _adopting or not _has_children():
         return
     import psutil

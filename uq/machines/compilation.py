@@ -1,12 +1,11 @@
 """Notice when numba compiles, which may take a while."""
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 
@@ -51,32 +50,29 @@ def compilation(
 def when_imported(name: str, action: Callable[[], object]) -> Callable[[], None]:
     """Call `action` once a module has been imported; return a function that cancels this."""
 
-    class Finder(MetaPathFinder):
-        def find_spec(
-            self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
-        ) -> ModuleSpec | None:
-            if fullname != name:
-                return None
-            sys.meta_path.remove(self)  # the finders after it find the module
-            try:
-                spec = find_spec(name)
-            finally:
-                sys.meta_path.insert(0, self)  # the spec may be asked for without an import
-            if spec and spec.loader:
-                execute = spec.loader.exec_module
+    def find(fullname: str, *arguments: Any) -> ModuleSpec | None:
+        if fullname != name:
+            return None
+        sys.meta_path.remove(finder)  # the finders after it find the module
+        try:
+            spec = find_spec(name)
+        finally:
+            sys.meta_path.insert(0, finder)  # the spec may be asked for without an import
+        if spec and spec.loader:
+            execute = spec.loader.exec_module
 
-                def execute_then_act(module: ModuleType) -> None:
-                    forget()
-                    execute(module)
-                    action()
+            def execute_then_act(module: ModuleType) -> None:
+                forget()
+                execute(module)
+                action()
 
-                spec.loader.exec_module = execute_then_act  # type: ignore[method-assign]
-            return spec
+            spec.loader.exec_module = execute_then_act  # type: ignore[method-assign]
+        return spec
 
     def forget() -> None:
         if finder in sys.meta_path:
             sys.meta_path.remove(finder)
 
-    finder = Finder()
+    finder: Any = SimpleNamespace(find_spec=find)
     sys.meta_path.insert(0, finder)
     return forget

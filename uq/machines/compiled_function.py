@@ -1,7 +1,4 @@
-"""A function compiled by numba as a machine: rows are computed by one compiled loop.
-
-A row that raises, or returns what it must not, is computed once more by itself, which says why.
-"""
+"""A function compiled by numba as a machine: rows are computed by one compiled loop."""
 
 import sys
 from collections.abc import Callable
@@ -12,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats, censored_name
-from uq.machines.returned import Returned
+from uq.contract import Floats
 from uq.machines.row_by_row import SEED, RowByRow
 
 
@@ -27,7 +23,10 @@ def is_compiled(function: Callable[..., Any]) -> bool:
 
 
 class Compiled(RowByRow):
-    """A batch that computes rows by a compiled loop; see `RowByRow`."""
+    """A batch that computes rows by a compiled loop; see `RowByRow`.
+
+    A row that raises, or returns an invalid value, is computed once more by itself for its message.
+    """
 
     def __call__(
         self, x: Floats, seed: NDArray[np.uint64], settings: object
@@ -37,16 +36,14 @@ class Compiled(RowByRow):
         loop = _loop_of(self.function, self.names, shapes)
         if loop is None:
             return super().__call__(x, seed, settings)
-        columns = {
-            n: np.empty((len(x), *declaration.shape)) for n, declaration in self.returned.items()
-        }
+        columns = self.blank(len(x))
         bad = np.zeros(len(x), dtype=bool)
-        loop(x, seed, bad, tuple(columns.values()))
+        loop(x, seed, bad, tuple(columns[name] for name in self.returned))
         for name, declaration in self.returned.items():
-            bad |= _illegal(declaration, columns[name].reshape(len(x), -1)).any(axis=1)
-        for name, declaration in self.returned.items():
-            if declaration.life:
-                columns[censored_name(name)] = np.zeros((len(x), *declaration.shape), dtype=bool)
+            values = columns[name].reshape(len(x), -1)
+            bad |= declaration.output(name).is_invalid(values).any(axis=1)
+            if not declaration.life:
+                bad |= np.isposinf(values).any(axis=1)
         status, messages = np.zeros(len(x), np.int8), dict[int, str]()
         if bad.any():
             places = np.flatnonzero(bad)
@@ -57,15 +54,8 @@ class Compiled(RowByRow):
         return columns, status, messages
 
     def row(self, row: list[float], seed: int) -> Any:
-        """Return what the function returns on a row, given a seed of the type of the loop."""
+        """Call the function on a row, with a seed of the type that the loop uses."""
         return super().row(row, np.uint64(seed))  # type: ignore[arg-type]
-
-
-def _illegal(declaration: Returned, values: Floats) -> NDArray[np.bool_]:
-    absent = declaration.output("").is_absent(values)
-    if declaration.may_be_undefined:
-        absent &= ~np.isnan(values)
-    return absent if declaration.life else absent | np.isposinf(values)
 
 
 @cache
@@ -101,7 +91,7 @@ def _loop_of(
     try:  # on no rows
         columns = tuple(np.empty((0,) * (1 + n)) for n in dims)
         loop(np.empty((0, len(names))), np.empty(0, np.uint64), np.empty(0, np.bool_), columns)
-    except Exception:  # by itself, each row says what is wrong
+    except Exception:  # computed by itself, each row has an error message
         return None
     return loop
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from uq.contract import Floats, Model, Parameter
+from uq.contract import Floats, Model, Parameter, Status
 from uq.errors import InputError, one_line
 from uq.machines.fmu_description import (
     bounds_of,
@@ -22,9 +22,9 @@ from uq.machines.fmu_description import (
     unit_of_variable,
     variables_of,
 )
-from uq.machines.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable, read_fmu_file
-from uq.machines.machine_file import content_of, refuse
-from uq.machines.returned import Censored, NonFiniteError, Returned, censored, checked
+from uq.machines.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable
+from uq.machines.machine_file import content_of, read_as, refuse
+from uq.machines.returned import Censored, Returned, RowError, censored, checked
 from uq.machines.row_by_row import RowByRow, model_from
 from uq.machines.row_folders import Folders
 from uq.sampling.input_faults import InputFault, unknown
@@ -46,8 +46,7 @@ def fmu_of(path: Path) -> Model:
     InputError
         When FMPy is not installed, or one of the files cannot be used.
     """
-    file = _file(path)
-    fmu = _fmu(path, file)
+    file, fmu = _read(path)
     description = description_of(fmu)
     reals = variables_of(description)
     settable = variables_of(description, "parameter")
@@ -76,22 +75,21 @@ def code_of_fmu(path: Path) -> str:
     whole = hashlib.sha256(fmpy.__version__.encode())
     if path.suffix == ".toml":
         whole.update(content_of(path))
-    whole.update(_fmu(path, _file(path)).read_bytes())
+    _, fmu = _read(path)
+    whole.update(fmu.read_bytes())
     return whole.hexdigest()[:16]
 
 
-def _file(path: Path) -> FmuFile:
+def _read(path: Path) -> tuple[FmuFile, Path]:
+    """Return a machine file, by default that of an FMU without one, and the path of the FMU."""
     if path.suffix == ".toml":
-        return read_fmu_file(path)
+        file = read_as(FmuFile, path)
+        return file, path.absolute().parent / file.machine.fmu
     description = description_of(path)
     table = FmuTable(
         name=_as_name(description.modelName), fmu=path.name, version=f"FMI {description.fmiVersion}"
     )
-    return FmuFile(machine=table)
-
-
-def _fmu(path: Path, file: FmuFile) -> Path:
-    return path.absolute().parent / file.machine.fmu
+    return FmuFile(machine=table), path.absolute()
 
 
 def _as_name(variable: str) -> str:
@@ -202,10 +200,9 @@ class _Fmu:
 
         Raises
         ------
-        FmuError, NonFiniteError
+        FmuError, RowError
         """
-        numbers = list(row.values())
-        with self.folders.row(numbers) as folder:
+        with self.folders.row(list(row.values())) as folder:
             os.chdir(folder)  # where it may write; the caller leaves it
             log = list[str]()
             try:
@@ -218,10 +215,10 @@ class _Fmu:
                 return outputs
             except Exception as error:
                 (folder / _LOG).write_text("\n".join(log), encoding="utf-8")
-                detail = f" ({log[-1]})" if log else ""
-                text = f"{one_line(error)}{detail}; see {self.folders.kept(numbers)}"
-                kind = NonFiniteError if isinstance(error, NonFiniteError) else FmuError
-                raise kind(text) from None
+                text = one_line(error) + (f" ({log[-1]})" if log else "")
+                if isinstance(error, RowError) and error.status == Status.NON_FINITE:
+                    raise RowError(text, error.status) from None
+                raise FmuError(text) from None
 
     def _history(self, unpacked: Path, row: Mapping[str, float], log: list[str]) -> Any:
         """Return the variables that are wanted over time, from an FMU unpacked for this row.

@@ -15,7 +15,7 @@ from xml.etree.ElementTree import iterparse
 from zipfile import ZipFile
 
 from uq.errors import InputError, described
-from uq.machines.machine_file import file_there
+from uq.files.paths import file_there
 
 _VERSION = "2.0"
 _UNBOUNDED = 1e300  # written by tools for no bound at all
@@ -46,7 +46,7 @@ def _read(path: Path, stamp: tuple[int, int]) -> Any:
     except ImportError:
         raise InputError(f"{path}: an FMU needs FMPy: pip install 'vibrolife[fmu]'") from None
     try:
-        version = _version_of(path)  # FMPy reads others too, and complains of what is in them
+        version = _version_of(path)  # FMPy also reads others, and complains about them
         if version != _VERSION:
             raise InputError(f"{path}: is of FMI {version}, not {_VERSION}; export it as such")
         description = fmpy.read_model_description(str(path), validate=False)

@@ -1,11 +1,10 @@
-"""A machine file that names an FMU: what of it is varied, and what is made of its variables."""
+"""A machine file that names an FMU: its varied parameters, and outputs from its variables."""
 
-from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from uq.machines.machine_file import MachineName, Name, TomlTable, read_as
+from uq.machines.machine_file import MachineName, Name, TomlTable
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -68,14 +67,3 @@ class FmuFile(TomlTable):
     machine: FmuTable
     parameters: dict[Name, FmuParameterTable] = {}
     outputs: dict[Name, FmuOutputTable] = {}
-
-
-def read_fmu_file(path: Path) -> FmuFile:
-    """Read a machine file that names an FMU.
-
-    Raises
-    ------
-    InputError
-        One line for each mistake.
-    """
-    return read_as(FmuFile, path)

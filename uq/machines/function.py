@@ -2,7 +2,6 @@
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import inf
 from numbers import Real
 from typing import Any, TypeVar, get_args, get_type_hints, overload
@@ -22,15 +21,6 @@ _UNFIT = (
 )
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-
-@dataclass(frozen=True)
-class Declared:
-    """What the decorator says of a function."""
-
-    returns: Mapping[str, Returned | str] | None = None
-    title: str = ""
-    version: str = "1"
 
 
 @overload
@@ -90,7 +80,7 @@ def machine(
             )
         if kind := next((word for test, word in _UNFIT if test(function)), ""):
             raise InputError(f"machine '{plain.__name__}': {kind}")
-        setattr(function, _MARK, Declared(returns, title, version))
+        setattr(function, _MARK, (returns, title, version))
         return function
 
     return mark if function is None else mark(function)
@@ -98,7 +88,7 @@ def machine(
 
 def is_machine(candidate: object) -> bool:
     """Whether something was declared by `machine`."""
-    return isinstance(getattr(candidate, _MARK, None), Declared)
+    return isinstance(getattr(candidate, _MARK, None), tuple)
 
 
 def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | None = None) -> Model:
@@ -115,20 +105,20 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     InputError
         When its arguments or declarations cannot be used.
     """
-    declared: Declared = getattr(function, _MARK)
+    returns, title, version = getattr(function, _MARK)
     plain = _plain(function)
     name = plain.__name__
     label = f"machine '{name}'"
     fields, wants_seed = _parameters(plain, label)
-    outputs = read_returns(label, declared.returns) or dict(returned or {})
-    title = declared.title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
+    outputs = read_returns(label, returns) or dict(returned or {})
+    title = title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
     kind = Compiled if is_compiled(function) else RowByRow
     batch = kind(function, tuple(fields), outputs, wants_seed)
-    return model_from(name, title, declared.version, fields, outputs, batch, wants_seed)
+    return model_from(name, title, version, fields, outputs, batch, wants_seed)
 
 
 def _plain(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the function as it was written, without what wraps or compiles it."""
+    """Return the function as it was written, without wrappers and compiler."""
     return inspect.unwrap(getattr(function, "py_func", function))
 
 
@@ -141,21 +131,11 @@ def _parameters(function: Callable[..., Any], label: str) -> tuple[Fields, bool]
         raise InputError(f"{label}: annotations: {error}") from None
     signature = inspect.signature(function)
     for name, argument in signature.parameters.items():
-        if name == SEED:
-            continue
-        if argument.kind not in (argument.POSITIONAL_OR_KEYWORD, argument.KEYWORD_ONLY):
-            faults.append(f"{label}: argument '{argument}': only named floats can be parameters")
-            continue
-        if not isinstance(argument.default, Real):
-            was = "no default" if argument.default is argument.empty else f"{argument.default!r}"
-            faults.append(f"{label}: argument '{name}' has {was}; its nominal value is needed")
-            continue
-        try:
-            parameter = _parameter(name, hints.get(name, float))
-        except InputError as error:
-            faults += [f"{label}: argument '{name}': {error}"]
-            continue
-        fields[name] = parameter, float(argument.default)
+        if name != SEED:
+            try:
+                fields[name] = _field(argument, hints.get(name, float))
+            except InputError as error:
+                faults.append(f"{label}: {error}")
     if not fields and not faults:
         faults.append(f"{label}: has no arguments, so nothing to study")
     if faults:
@@ -163,12 +143,19 @@ def _parameters(function: Callable[..., Any], label: str) -> tuple[Fields, bool]
     return fields, SEED in signature.parameters
 
 
-def _parameter(name: str, hint: Any) -> Parameter:
+def _field(argument: inspect.Parameter, hint: Any) -> tuple[Parameter, float]:
+    """Return the parameter and the nominal value that an argument declares."""
+    name, default = argument.name, argument.default
+    if argument.kind not in (argument.POSITIONAL_OR_KEYWORD, argument.KEYWORD_ONLY):
+        raise InputError(f"argument '{argument}': only named floats can be parameters")
+    if not isinstance(default, Real):
+        given = "no default" if default is argument.empty else f"{default!r}"
+        raise InputError(f"argument '{name}' has {given}; its nominal value is needed")
     unit, bounds, meaning = "1", (-inf, inf), name.replace("_", " ")
     words = iter(("unit", "meaning"))
     for extra in get_args(hint)[1:] if hint is not float else ():
         if isinstance(extra, Parameter):
-            return extra
+            return extra, float(default)
         if isinstance(extra, tuple) and [isinstance(bound, Real) for bound in extra] == [True] * 2:
             bounds = (float(extra[0]), float(extra[1]))
         elif isinstance(extra, str):
@@ -177,7 +164,7 @@ def _parameter(name: str, hint: Any) -> Parameter:
             else:
                 meaning = extra
         else:
-            raise InputError(
-                f"annotation {extra!r}: a unit, a pair of bounds or a meaning is expected"
-            )
-    return Parameter(name, unit, meaning, bounds, "assumed: the default of the function")
+            problem = "a unit, a pair of bounds or a meaning is expected"
+            raise InputError(f"argument '{name}': annotation {extra!r}: {problem}")
+    source = "assumed: the default of the function"
+    return Parameter(name, unit, meaning, bounds, source), float(default)

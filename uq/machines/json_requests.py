@@ -1,21 +1,17 @@
-"""Requests with JSON over HTTP: what is wrong with one is answered in one line, never computed.
-
-A page on the web can make a browser send requests to a server on loopback, under a name of its own
-that leads there; so the host, the origin and the type of the content are checked.
-"""
+"""Requests with JSON over HTTP: an invalid one is answered in one line, never computed."""
 
 import json
-import math
 import re
 import socket
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from ipaddress import ip_address
-from threading import Timer
+from math import isfinite
 from typing import Any
 from urllib.parse import urlsplit
 
+from uq.machines.um_bridge import cut_after
 from uq.text.literals import plain_line
 
 LONGEST = 1_000_000
@@ -40,7 +36,10 @@ def invalid(message: object, status: int = HTTPStatus.BAD_REQUEST) -> RequestErr
 def json_server(
     place: Any, family: int, answer: Callable[[str, dict[str, Any]], Any]
 ) -> ThreadingHTTPServer:
-    """Return a server of JSON, not yet serving.
+    """Return a server of JSON, not yet serving; it answers an invalid request in one line.
+
+    A page on the web can make a browser send requests to a server on loopback, under a name of its
+    own that leads there; so the host, the origin and the type of the content are checked.
 
     Parameters
     ----------
@@ -61,7 +60,6 @@ def json_server(
     class Server(ThreadingHTTPServer):
         address_family = family
         request_queue_size = 128
-        daemon_threads = True
 
         def handle_error(self, request: Any, client_address: Any) -> None:
             """Say nothing of a client that has left."""
@@ -77,19 +75,8 @@ def json_server(
 
         def handle_one_request(self) -> None:
             """Handle a request, unless it takes too long to come."""
-            self._patience = Timer(_SECONDS, self._hang_up)
-            self._patience.daemon = True
-            self._patience.start()
-            try:
+            with cut_after(_SECONDS, self.connection, socket.SHUT_RD) as self._patience:
                 super().handle_one_request()
-            finally:
-                self._patience.cancel()
-
-        def _hang_up(self) -> None:
-            try:
-                self.connection.shutdown(socket.SHUT_RD)
-            except OSError:
-                pass
 
         def _answer(self, has_body: bool) -> None:
             try:
@@ -137,7 +124,7 @@ def json_server(
             return body
 
         def send_error(self, code: int, message: Any = None, explain: Any = None) -> None:
-            """Answer what is no request of HTTP, in JSON too."""
+            """Answer a request that is not HTTP in JSON too."""
             self.request_version = self.protocol_version  # with a head, as an answer to HTTP 0.9
             self._send(*invalid(message or HTTPStatus(code).phrase, code).answer)
 
@@ -160,11 +147,11 @@ def finite(values: Any) -> Any:
     """Return numbers in nested lists with None for those that JSON has no number for."""
     if isinstance(values, list | tuple):
         return [finite(value) for value in values]
-    return values if math.isfinite(values) else None
+    return values if isfinite(values) else None
 
 
 def _is_this(host: str, listening: str) -> bool:
-    """Return whether a Host is an address, the name that was given, or that of this machine."""
+    """Return whether a Host is an address, the name listened at, or the name of this computer."""
     try:
         name = urlsplit(f"//{host}").hostname or ""
     except ValueError:

@@ -5,6 +5,7 @@ import re
 import shutil
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from math import inf, isfinite
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -12,7 +13,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from uq.errors import InputError, nearest, one_line
-from uq.files.paths import node
+from uq.files.paths import file_there, node
 from uq.machines.row_by_row import SEED
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
@@ -34,24 +35,8 @@ class TomlTable(BaseModel):
 T = TypeVar("T", bound=TomlTable)
 
 
-def file_there(path: Path) -> None:
-    """Refuse a path without a file.
-
-    Raises
-    ------
-    InputError
-    """
-    if kind := node(path):
-        raise InputError(f"{path}: is {kind}, not a file")
-    if not path.is_file():
-        others = path.parent.glob(f"*{path.suffix}") if path.parent.is_dir() else []
-        raise InputError(
-            f"{path}: no such file{nearest(path.name, [other.name for other in others])}"
-        )
-
-
 def data_of(path: Path) -> dict[str, Any]:
-    """Return what a machine file says, unchecked.
+    """Return the parsed content of a machine file, unchecked.
 
     Raises
     ------
@@ -82,26 +67,23 @@ def read_as(kind: type[T], path: Path) -> T:
     InputError
         One line for each mistake.
     """
-
-    def allowed_at(place: Sequence[Any]) -> list[str]:
-        """Return what may stand in the place of an unknown key."""
-        if len(place) == 1:
-            return list(kind.model_fields)
-        return _keys(kind.model_fields[place[0]].annotation)
-
+    data = data_of(path)
     try:
-        return kind.model_validate(data_of(path))
+        return kind.model_validate(data)
     except ValidationError as invalid:
-        refuse(
-            path, (fault_of(dict(error), allowed_at) for error in invalid.errors(include_url=False))
-        )
+        errors = map(dict, invalid.errors(include_url=False))
+        refuse(path, (fault_of(error, partial(_keys, kind)) for error in errors))
         raise
 
 
-def _keys(annotation: Any) -> list[str]:
-    """Return the keys of a table, or of those in a dict of tables."""
-    table: Any = annotation if isinstance(annotation, type) else annotation.__args__[-1]
-    return [field.alias or name for name, field in table.model_fields.items()]
+def _keys(file: type[BaseModel], place: Sequence[Any]) -> tuple[str, list[str]]:
+    """Return the allowed keys in place of an unknown key: kind and names."""
+    table: Any = file
+    if len(place) > 1:
+        table = file.model_fields[place[0]].annotation
+        table = table if isinstance(table, type) else table.__args__[-1]
+    names = [field.alias or name for name, field in table.model_fields.items()]
+    return "key" if len(place) > 1 else "table", names
 
 
 def refuse(path: Path, faults: Iterable[InputFault]) -> None:
@@ -228,7 +210,7 @@ def template_of(machine: MachineTable, folder: Path) -> str:
 
 
 def code_files(machine: MachineTable, folder: Path) -> list[Path]:
-    """Return the files whose content is part of a machine, but for its file and its program.
+    """Return the files that determine the rows of a machine, besides its file and its program.
 
     They are its template, the files that it names, and those among the arguments.
     """

@@ -10,12 +10,12 @@ import time
 from codecs import BOM_UTF8
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, fields
 from math import inf
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
-from uq.contract import Model, Parameter
+from uq.contract import Model, Parameter, Status
 from uq.machines.child_processes import bound_files, end_descendants, ended_within
 from uq.machines.machine_file import (
     FOLDER,
@@ -28,15 +28,15 @@ from uq.machines.machine_file import (
     template_of,
 )
 from uq.machines.program_outputs import STDERR_FILE, STDOUT_FILE, value_in
-from uq.machines.returned import Returned, checked
-from uq.machines.row_by_row import SEED, OverdueError, RowByRow, model_from
+from uq.machines.returned import Returned, RowError, checked, from_plain
+from uq.machines.row_by_row import SEED, RowByRow, model_from
 from uq.machines.row_folders import Folders, size_of
 
-_LAST = 300  # characters of what a failed program said
+_LAST = 300  # characters of the last line of a failed program
 _LOOK_SECONDS = 1.0  # between looks at the size of a folder
 _TRIES = 3  # of a program that is killed, before it is blamed
 _SEEDS = 2**31 - 1  # many programs take more for the largest of 32 bits, and 0 for the clock
-_KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
+_KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # the program, or the last command of a shell
 _REMEDIES = {
     errno.EACCES: "; make it executable: chmod +x",
     errno.ENOEXEC: "; a script begins with a line such as #!/bin/sh",
@@ -60,21 +60,13 @@ def program_of(path: Path) -> Model:
         When the file cannot be used.
     """
     read = read_machine(path)
-    returned = {
-        name: Returned(
-            output.unit,
-            output.meaning,
-            output.life,
-            tuple(output.shape),
-            output.may_be_undefined,
-            output.scales,
-        )
-        for name, output in read.outputs.items()
-    }
+    declared = {field.name for field in fields(Returned)}
+    tables = {name: table.model_dump(include=declared) for name, table in read.outputs.items()}
+    returned = from_plain(tables)
     folder = path.absolute().parent
     folders = Folders(folder / f"{read.machine.name}.rows")
-    runner = _Program(read, returned, folder, folders)
-    fields = {
+    runner = _Program(read, returned, folder, folders, template_of(read.machine, folder))
+    inputs = {
         name: (
             Parameter(
                 name, parameter.unit, parameter.meaning or name, parameter.span, parameter.source
@@ -85,9 +77,9 @@ def program_of(path: Path) -> Model:
     }
     machine = read.machine
     random = _takes_seed(machine, folder)
-    batch = RowByRow(runner, tuple(fields), returned, True, folders.leave, folders.keep)
+    batch = RowByRow(runner, tuple(inputs), returned, True, folders.leave, folders.keep)
     title = machine.title or machine.name
-    return model_from(machine.name, title, machine.version, fields, returned, batch, random)
+    return model_from(machine.name, title, machine.version, inputs, returned, batch, random)
 
 
 def code_of_program(path: Path) -> str:
@@ -128,41 +120,28 @@ class _Program:
     returned: Mapping[str, Returned]
     folder: Path
     folders: Folders
-    limit: float = inf  # time for a row [s]
-    template: str = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "template", template_of(self.read.machine, self.folder))
-
-    def limited(self, seconds: float) -> Self:
-        """Return a runner that stops rows after a time."""
-        return replace(self, limit=seconds)
+    template: str
+    row_limit: float = inf  # time for a row [s]
 
     def __call__(self, **row: float | int) -> Mapping[str, Any]:
         """Run the program on a row; return its outputs.
 
         Raises
         ------
-        ProgramError, WrongReturnError, NonFiniteError, OverdueError
+        ProgramError, RowError
         """
-        kept = self.folders.kept(list(row.values()))
         with self.folders.row(list(row.values())) as folder:
-            try:
-                for _ in range(_TRIES - 1):
-                    with suppress(_KilledError):
-                        self._run(folder, row)
-                        break
-                else:
+            for _ in range(_TRIES - 1):
+                with suppress(_KilledError):
                     self._run(folder, row)
-                outputs = {
-                    name: value_in(folder, name, output)
-                    for name, output in self.read.outputs.items()
-                }
-                list(checked(outputs, self.returned))  # here: the folder of a failed row is kept
-                return outputs
-            except Exception as error:
-                error.args = (f"{error}; see {kept}",)
-                raise
+                    break
+            else:
+                self._run(folder, row)
+            outputs = {
+                name: value_in(folder, name, output) for name, output in self.read.outputs.items()
+            }
+            list(checked(outputs, self.returned))  # here: the folder of a failed row is kept
+            return outputs
 
     def _run(self, folder: Path, row: Mapping[str, float | int]) -> None:
         machine = self.read.machine
@@ -200,13 +179,14 @@ class _Program:
             raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
 
     def _ended(self, process: subprocess.Popen[bytes], folder: Path, largest: int) -> int:
-        """Return the exit code of a program, once it and all that descends from it has ended."""
+        """Return the exit code of a program, once it and all its descendants have ended."""
         fault: Exception | None = None
-        until = time.monotonic() + self.limit
+        until = time.monotonic() + self.row_limit
         try:
             while not ended_within(process, min(until - time.monotonic(), _LOOK_SECONDS)):
                 if time.monotonic() >= until:
-                    fault = OverdueError(f"did not end within {self.limit:g} s")
+                    message = f"did not end within {self.row_limit:g} s"
+                    fault = RowError(message, Status.TIMED_OUT)
                 elif size_of(folder) > largest:
                     message = f"was ended, as it wrote files of more than {largest:.2g} bytes"
                     fault = ProgramError(message)

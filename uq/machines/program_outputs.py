@@ -17,7 +17,7 @@ import numpy as np
 from uq.errors import one_line
 from uq.files.netcdf_files import refuse_tricks
 from uq.machines.machine_file import STDOUT, OutputTable
-from uq.machines.returned import WrongReturnError
+from uq.machines.returned import RowError
 from uq.text.literals import read_number
 
 LONGEST = 100_000_000
@@ -25,10 +25,10 @@ LONGEST = 100_000_000
 
 _SEARCH_SECONDS = 10.0  # some patterns try more ways than there is time
 
-_SHOWN = 60  # characters of what is no number
+_SHOWN = 60  # characters of a text that is no number
 
 STDOUT_FILE, STDERR_FILE = "stdout.txt", "stderr.txt"
-"""Names, in the folder of a row, of what its program printed."""
+"""Names of the files in the folder of a row with the output of its program."""
 
 
 def value_in(folder: Path, name: str, output: OutputTable) -> Any:
@@ -36,21 +36,19 @@ def value_in(folder: Path, name: str, output: OutputTable) -> Any:
 
     Raises
     ------
-    WrongReturnError
+    RowError
         When it is not there, with the reason.
     """
     file = STDOUT_FILE if output.file == STDOUT else output.file
     where = "its output" if output.file == STDOUT else f"'{output.file}'"
     path = folder / file
     if not path.is_file():
-        raise WrongReturnError(f"wrote no file '{output.file}', where '{name}' is expected")
+        raise RowError(f"wrote no file '{output.file}', where '{name}' is expected")
     try:
         if output.netcdf:
             return _in_netcdf(path, output.netcdf)
         if path.stat().st_size > LONGEST:
-            raise WrongReturnError(
-                f"wrote {path.stat().st_size} bytes to {where}; too many to read"
-            )
+            raise RowError(f"wrote {path.stat().st_size} bytes to {where}; too many to read")
         text = path.read_text(encoding="utf-8-sig", errors="replace")
         if output.json_path:
             return _in_json(text, output.json_path)
@@ -58,7 +56,7 @@ def value_in(folder: Path, name: str, output: OutputTable) -> Any:
             return _in_csv(text, output.csv)
         return _matched(text, output.pattern)
     except (LookupError, ValueError, TypeError, OverflowError, OSError, RecursionError) as error:
-        raise WrongReturnError(f"has no '{name}' in {where}: {one_line(error)}") from None
+        raise RowError(f"has no '{name}' in {where}: {one_line(error)}") from None
 
 
 def _in_json(text: str, path: str) -> Any:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Output
+from uq.contract import Output, Status
 from uq.errors import InputError, nearest
 
 _MOST_NAMES = 5  # that a message lists
@@ -16,7 +16,7 @@ _MOST_NAMES = 5  # that a message lists
 
 @dataclass(frozen=True)
 class Censored:
-    """A life of which only a lower bound is known; see `censored`."""
+    """A right-censored life: only a lower bound is known; see `censored`."""
 
     time: float
 
@@ -83,7 +83,7 @@ def dimensions(name: str, shape: Sequence[int]) -> dict[str, list[int]]:
 
 
 def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> dict[str, Returned]:
-    """Return what a machine declares that it returns, units as strings.
+    """Return the declared outputs of a machine, a unit alone as a `Returned`.
 
     Raises
     ------
@@ -93,8 +93,9 @@ def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> di
         return {}
     if not isinstance(returns, Mapping):
         raise InputError(f"{label}: returns: must be a dict of outputs, not {returns!r}")
-    wrong = [
-        f"{label}: returns: {name!r} must be a unit or a uq.Returned, not {declaration!r}"
+    tables = {name: table for name, table in returns.items() if isinstance(table, Returned)}
+    faults = [
+        f"{name!r} must be a unit or a uq.Returned, not {declaration!r}"
         for name, declaration in returns.items()
         if not (
             isinstance(declaration, str | Returned)
@@ -102,20 +103,20 @@ def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> di
             and name.isidentifier()
         )
     ]
-    wrong += [
-        f"{label}: returns: shape of '{name}' must be a tuple of numbers above 0,"
-        f" not {declaration.shape!r}"
-        for name, declaration in returns.items()
-        if isinstance(declaration, Returned) and not _is_shape(declaration.shape)
+    faults += [
+        f"shape of '{name}' must be a tuple of numbers above 0, not {table.shape!r}"
+        for name, table in tables.items()
+        if not _is_shape(table.shape)
     ]
-    wrong += [
-        f"{label}: returns: unit and meaning of '{name}' must be text"
-        for name, declaration in returns.items()
-        if isinstance(declaration, Returned)
-        and not (isinstance(declaration.unit, str) and isinstance(declaration.meaning, str))
+    faults += [
+        f"unit and meaning of '{name}' must be text"
+        for name, table in tables.items()
+        if not (isinstance(table.unit, str) and isinstance(table.meaning, str))
     ]
-    if wrong or not returns:
-        raise InputError(*(wrong or [f"{label}: returns: name at least one output"]))
+    if not returns:
+        faults = ["name at least one output"]
+    if faults:
+        raise InputError(*(f"{label}: returns: {fault}" for fault in faults))
     return {
         n: Returned(declaration) if isinstance(declaration, str) else declaration
         for n, declaration in returns.items()
@@ -126,12 +127,19 @@ def _is_shape(shape: Any) -> bool:
     return isinstance(shape, tuple) and all(isinstance(n, int) and n > 0 for n in shape)
 
 
-class WrongReturnError(Exception):
-    """A value that a machine must not return, in a sentence."""
+class RowError(Exception):
+    """Why a row has no values, in a sentence, and the status that it gets.
 
+    Parameters
+    ----------
+    message : str
+    status : Status
+        By default that of a value which a machine must not return.
+    """
 
-class NonFiniteError(Exception):
-    """A number that is not finite where it must be, in a sentence."""
+    def __init__(self, message: str, status: Status = Status.BAD_SHAPE):
+        super().__init__(message)
+        self.status = status
 
 
 def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
@@ -139,7 +147,7 @@ def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.b
 
     Raises
     ------
-    WrongReturnError
+    RowError
     """
     try:
         given = np.asarray(value)
@@ -152,13 +160,13 @@ def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.b
         if given.dtype.kind not in "fiub":
             raise TypeError
         if not given.size:
-            raise WrongReturnError(f"returned '{name}' as an empty array")
+            raise RowError(f"returned '{name}' as an empty array")
         return given.astype(float), cut
     except OverflowError:
-        raise WrongReturnError(f"returned '{name}' with an integer too large for a float") from None
+        raise RowError(f"returned '{name}' with an integer too large for a float") from None
     except (TypeError, ValueError):
         kind = type(value).__name__
-        raise WrongReturnError(f"returned '{name}' as {kind}, not as a number or array") from None
+        raise RowError(f"returned '{name}' as {kind}, not as a number or array") from None
 
 
 def _plain(element: Any) -> Any:
@@ -174,17 +182,17 @@ def seen_in(row: Any) -> dict[str, Returned]:
 
     Raises
     ------
-    WrongReturnError
+    RowError
         When it is not a dict of numbers.
     """
     if not isinstance(row, Mapping):
-        raise WrongReturnError(f"returned {type(row).__name__}, not a dict")
+        raise RowError(f"returned {type(row).__name__}, not a dict")
     if not row:
-        raise WrongReturnError("returned an empty dict; name at least one output")
+        raise RowError("returned an empty dict; name at least one output")
     outputs = {}
     for name, value in row.items():
         if not (isinstance(name, str) and name.isidentifier()):
-            raise WrongReturnError(f"returned {name!r}, which cannot be the name of an output")
+            raise RowError(f"returned {name!r}, which cannot be the name of an output")
         numbers, cut = numbers_of(value, name)
         life = bool(cut.any() or np.isposinf(numbers).any())
         outputs[name] = Returned(life=life, shape=numbers.shape)
@@ -220,40 +228,38 @@ def checked(
 
     Raises
     ------
-    WrongReturnError
-        When the row returns anything else than `expected`.
-    NonFiniteError
-        When a number is NaN that may not be, or -inf.
+    RowError
+        When the row returns anything else than `expected`, or a number is NaN that may not be, or
+        -inf.
     """
     if isinstance(returned, tuple) and len(returned) == len(expected):
         returned = dict(zip(expected, returned, strict=True))
     if not isinstance(returned, Mapping):
-        raise WrongReturnError(f"returned {type(returned).__name__}, not a dict")
+        raise RowError(f"returned {type(returned).__name__}, not a dict")
     for name in expected:
         if name not in returned:
             names = [str(key) for key in returned]
             listed = ", ".join(f"'{key}'" for key in names[:_MOST_NAMES])
             listed += ", ..." * (len(names) > _MOST_NAMES)
             explanation = f"it returned {listed or 'an empty dict'}"
-            raise WrongReturnError(f"returned no '{name}' ({explanation}){nearest(name, names)}")
+            raise RowError(f"returned no '{name}' ({explanation}){nearest(name, names)}")
     for name in returned:
         if name not in expected:
-            raise WrongReturnError(f"returned '{name}', which 'returns' does not name")
+            raise RowError(f"returned '{name}', which 'returns' does not name")
     for name, declaration in expected.items():
         numbers, cut = numbers_of(returned[name], name)
         if numbers.shape != declaration.shape:
             shape = f"shape {numbers.shape}, expected {declaration.shape}"
-            raise WrongReturnError(f"returned '{name}' with {shape}")
+            raise RowError(f"returned '{name}' with {shape}")
         if not declaration.life and (cut.any() or np.isposinf(numbers).any()):
-            raise WrongReturnError(
+            raise RowError(
                 f"returned '{name}' as a life that has not ended, which it is not declared to be;"
                 f" in Python: returns={{'{name}': uq.Returned(life=True)}}, in a machine file:"
                 " life = true"
             )
         output = declaration.output(name)
-        absent = output.is_absent(numbers)
-        if declaration.may_be_undefined:
-            absent &= ~np.isnan(numbers)
-        if absent.any():
-            raise NonFiniteError(f"'{name}' {output.absence(numbers[absent][0])}")
+        invalid = output.is_invalid(numbers)
+        if invalid.any():
+            message = f"'{name}' {output.absence(numbers[invalid][0])}"
+            raise RowError(message, Status.NON_FINITE)
         yield name, numbers, cut

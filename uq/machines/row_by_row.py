@@ -2,18 +2,19 @@
 
 import keyword
 import os
+from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Parameter, Status, censored_name
 from uq.errors import InputError, described
-from uq.machines.returned import NonFiniteError, Returned, WrongReturnError, checked, dimensions
+from uq.machines.returned import Returned, RowError, checked, dimensions
 from uq.sampling.input_faults import unknown
 from uq.text.quantities import fault_of_unit
 
@@ -44,16 +45,12 @@ def model_from(
     InputError
         When a nominal value, a name or a unit cannot be used.
     """
-    faults = [*_nominal_faults(fields), *_name_faults(fields, returned)]
-    if faults := [*faults, *_unit_faults(fields, returned), *_scale_faults(fields, returned)]:
+    checks = _nominal_faults, _name_faults, _unit_faults, _scale_faults
+    if faults := [fault for check in checks for fault in check(fields, returned)]:
         raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
-    hints = [
-        (field_name, Annotated[float, parameter]) for field_name, (parameter, _) in fields.items()
-    ]
-    made: Any = NamedTuple("Parameters", hints)  # type: ignore[misc]
-    made._field_defaults.update(
-        {field_name: nominal for field_name, (_, nominal) in fields.items()}
-    )
+    nominal = [value for _, value in fields.values()]
+    made: Any = namedtuple("Parameters", fields, defaults=nominal)  # type: ignore[misc]
+    made.__annotations__ = {field: Annotated[float, fields[field][0]] for field in fields}
     axes: dict[str, list[int]] = {}
     for output, declaration in returned.items():
         axes |= dimensions(output, declaration.shape)
@@ -70,7 +67,7 @@ def model_from(
     )
 
 
-def _nominal_faults(fields: Fields) -> Iterator[str]:
+def _nominal_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
     for name, (parameter, nominal) in fields.items():
         low, high = parameter.bounds
         if not low < high:
@@ -104,7 +101,7 @@ def _scale_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[
 
 
 def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
-    """Yield faults of names, all of which share the variables of a result."""
+    """Yield faults of names: parameters and outputs share the variables of a result."""
     reserved = "of one of a result's own variables"
     taken = dict.fromkeys(fields, "of a parameter") | dict.fromkeys(_TAKEN, reserved)
     for name in fields:
@@ -129,10 +126,6 @@ class _NoSettings:
     """There are none."""
 
 
-class OverdueError(Exception):
-    """A row that was stopped as its time was over, in a sentence."""
-
-
 @dataclass(frozen=True)
 class RowByRow:
     """A batch that computes rows one after the other, each with its own end.
@@ -140,7 +133,8 @@ class RowByRow:
     Attributes
     ----------
     function : callable
-        Takes the parameters of a row as keywords, and returns a dict of outputs.
+        Takes the parameters of a row as keywords, and returns a dict of outputs. A dataclass with a
+        field ``row_limit`` stops a row after this time [s].
     names : tuple of str
         Of the parameters, in order.
     returned : dict of str to Returned
@@ -166,36 +160,27 @@ class RowByRow:
     @property
     def stops_rows(self) -> bool:
         """Whether it can stop a row whose time is over."""
-        return hasattr(self.function, "limited")
+        return hasattr(self.function, "row_limit")
 
     def limited(self, seconds: float) -> Self:
         """Return a batch that stops rows after a time [s]; only one that `stops_rows` can."""
         function: Any = self.function
-        return replace(self, function=function.limited(seconds))
+        return replace(self, function=replace(function, row_limit=seconds))
 
     def __call__(
         self, x: Floats, seed: NDArray[np.uint64], settings: object
     ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]:
         """Compute rows; see `uq.contract.Batch`."""
-        n = len(x)
-        columns: dict[str, NDArray[Any]] = {}
-        for name, declaration in self.returned.items():
-            columns[name] = np.full((n, *declaration.shape), np.nan)
-            if declaration.life:
-                columns[censored_name(name)] = np.zeros((n, *declaration.shape), dtype=bool)
-        status, messages = np.zeros(n, np.int8), dict[int, str]()
+        columns = self.blank(len(x))
+        status, messages = np.zeros(len(x), np.int8), dict[int, str]()
         for i, row in enumerate(x.tolist()):
             try:
                 for name, numbers, cut in checked(self.row(row, int(seed[i])), self.returned):
                     columns[name][i] = numbers
                     if self.returned[name].life:
                         columns[censored_name(name)][i] = cut
-            except WrongReturnError as error:
-                status[i], messages[i] = Status.BAD_SHAPE, str(error)
-            except NonFiniteError as error:
-                status[i], messages[i] = Status.NON_FINITE, str(error)
-            except OverdueError as error:
-                status[i], messages[i] = Status.TIMED_OUT, str(error)
+            except RowError as error:
+                status[i], messages[i] = error.status, str(error)
             except BaseException as error:  # Ctrl-C reaches another thread or process
                 status[i], messages[i] = Status.RAISED, described(error)
                 if self.wants_seed and _is_too_long(error):
@@ -203,13 +188,22 @@ class RowByRow:
         self.leave()
         return columns, status, messages
 
+    def blank(self, rows: int) -> dict[str, NDArray[Any]]:
+        """Return the columns of rows that are not computed yet."""
+        columns: dict[str, NDArray[Any]] = {}
+        for name, declaration in self.returned.items():
+            columns[name] = np.full((rows, *declaration.shape), np.nan)
+            if declaration.life:
+                columns[censored_name(name)] = np.full(columns[name].shape, False)
+        return columns
+
     def kept(self, row: list[float], seed: int) -> str:
         """Return where the files of a row that was lost with its process are, for its message."""
         folder = self.keep([*row, seed] if self.wants_seed else row)
         return f"; see {folder}" if folder else ""
 
     def row(self, row: list[float], seed: int) -> Any:
-        """Return what the function returns on a row; the current folder stays as it was."""
+        """Call the function on a row; the current folder stays as it was."""
         given: dict[str, Any] = dict(zip(self.names, row, strict=True))
         if self.wants_seed:
             given[SEED] = seed

@@ -10,8 +10,6 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from stat import S_ISREG
 
-import psutil
-
 from uq.machines.child_processes import judge
 
 _RUNNING = "running"
@@ -36,7 +34,7 @@ def _sizes(folder: Path) -> dict[Path, int]:
 
 
 def _lighten(folder: Path, passing: str) -> None:
-    """Remove what would fill the disk of a row that failed: a folder, and the largest files."""
+    """Remove a passing folder and the largest files of a failed row, which would fill the disk."""
     if passing:
         shutil.rmtree(folder / passing, ignore_errors=True)
     sizes = _sizes(folder)
@@ -65,7 +63,7 @@ class Folders:
 
     @contextmanager
     def row(self, numbers: Sequence[float | int]) -> Iterator[Path]:
-        """Yield the folder of a row, empty; if the block raises, it is kept under the row's name.
+        """Yield the folder of a row, empty; if the block raises, it is kept, and the error says so.
 
         Parameters
         ----------
@@ -78,8 +76,9 @@ class Folders:
         folder = self._new(numbers)
         try:
             yield folder
-        except Exception:
+        except Exception as error:
             self._keep(folder, numbers)
+            error.args = (f"{error}; see {self.kept(numbers)}",)
             raise
         else:
             shutil.rmtree(self.kept(numbers), ignore_errors=True)  # of an earlier run
@@ -95,7 +94,7 @@ class Folders:
                 return Path(tempfile.mkdtemp(prefix=mine, dir=self.root))
 
     def leave(self) -> None:
-        """Remove folders that killed processes left, and that of all folders if it holds none."""
+        """Remove folders that killed processes left, and the root if it is empty."""
         self._tidy()
         with suppress(OSError):
             self.root.rmdir()
@@ -123,6 +122,8 @@ class Folders:
 
         While the process that judges a row lives, it may want to keep its folder.
         """
+        import psutil
+
         for folder in self.root.glob(f"{_running_on_this()}*"):
             judge, pid, *_ = folder.name.removeprefix(_running_on_this()).split("-")
             mine = int(judge) == os.getpid()
@@ -131,7 +132,7 @@ class Folders:
 
 
 def _running_on_this() -> str:
-    """Return how the names of folders of running rows begin on this computer."""
+    """Return the beginning of the names of folders of running rows on this computer."""
     return f"{_RUNNING}-{socket.gethostname()}-"
 
 

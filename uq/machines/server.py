@@ -7,31 +7,77 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import count
+from itertools import count, islice
 from math import inf, nan
-from typing import Any, Self
+from typing import Any
 
 from uq.contract import Model, Parameter, censored_name
 from uq.errors import InputError
 from uq.machines.returned import Censored, Returned, from_plain
-from uq.machines.row_by_row import RowByRow, model_from
+from uq.machines.row_by_row import SEED, RowByRow, model_from
 from uq.machines.um_bridge import DESCRIBED, NEVER, VERSION, ServerError, call, split_address
 
 _SOON = 5.0  # seconds for which a server is expected to start
 _LARGEST = 10_000_000  # numbers in an answer
+
+_ZEROS = "the server states no nominal values, so all inputs are 0: give others, --set x1=1"
 
 _turns = count(os.getpid())  # of several servers, each process begins with another one
 
 
 @dataclass(frozen=True)
 class _RemoteModel:
-    """A model as its server describes it."""
+    """A model as its servers describe it; called with a row, it asks them for the outputs."""
 
-    server: str
+    servers: tuple[str, ...]
     name: str
     inputs: tuple[int, ...]
     outputs: tuple[int, ...]
     information: Mapping[str, Any]
+    row_limit: float = inf  # time for a row [s]
+
+    @property
+    def described(self) -> Mapping[str, Any]:
+        """Names, units and bounds, if its server states them as `uq.machines.serving` does."""
+        return self.information.get(DESCRIBED) or {}
+
+    def __call__(self, **row: float | int) -> dict[str, Any]:
+        """Return the outputs of a row.
+
+        Raises
+        ------
+        ServerError, RowError
+        """
+        config = {SEED: row[SEED]} if SEED in row else {}
+        inputs = iter(map(float, row.values()))
+        vectors = [list(islice(inputs, size)) for size in self.inputs]
+        body = {"name": self.name, "input": vectors, "config": config}
+        turn = next(_turns) % len(self.servers)
+        servers = self.servers[turn:] + self.servers[:turn]
+        try:
+            answer = call(servers, "Evaluate", body, limit=self.row_limit)
+        except ServerError as error:
+            if self.described or any(map(any, vectors)):
+                raise
+            raise ServerError(f"{error}; {_ZEROS}") from None
+        output = answer.get("output") if isinstance(answer, dict) else None
+        if not isinstance(output, list) or not all(isinstance(vector, list) for vector in output):
+            raise ServerError(f"{self.servers[0]} answers Evaluate without a list of vectors")
+        if self.described:
+            return self._named(_numbers(output, answer.get(NEVER)))
+        names = _vectors(len(output))
+        return {n: v[0] if len(v) == 1 else v for n, v in zip(names, output, strict=True)}
+
+    def _named(self, output: list[list[float]]) -> dict[str, Any]:
+        """Return outputs of a server that describes them: vectors by name, then flags."""
+        columns = dict(zip(self.described["columns"], output, strict=True))
+        outputs: dict[str, Any] = {}
+        for name, entry in self.described["outputs"].items():
+            flags = columns.get(censored_name(name)) or [0.0] * len(columns[name])
+            both = zip(columns[name], flags, strict=True)
+            values = [Censored(value) if cut else value for value, cut in both]
+            outputs[name] = values if entry["shape"] else values[0]
+        return outputs
 
 
 def server_model(address: str) -> Model:
@@ -54,11 +100,13 @@ def server_model(address: str) -> Model:
         When no such model is there.
     """
     first, *others = address.split(",")
-    remote = _known(first)
+    remote = _remote_model(first)
     for other in others:
-        if replace(_known(other), server=remote.server) != remote:
+        copy = _remote_model(other)
+        if replace(copy, servers=remote.servers) != remote:
             raise InputError(f"{other}: is a different model than {first}")
-    described = remote.information.get(DESCRIBED) or {}
+        remote = replace(remote, servers=remote.servers + copy.servers)
+    described = remote.described
     try:
         fields = {
             entry["name"]: (
@@ -82,25 +130,23 @@ def server_model(address: str) -> Model:
         }
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise InputError(f"{address}: describes itself wrongly: {error!r}") from None
-    servers = tuple(split_address(part)[0] for part in address.split(","))
-    evaluate = _Evaluate(remote, servers, tuple(fields), tuple(outputs) if described else ())
     name = re.sub(r"[^A-Za-z0-9_-]", "-", remote.name)
     random = bool(described.get("random"))
-    batch = RowByRow(evaluate, tuple(fields), outputs, random)
+    batch = RowByRow(remote, tuple(fields), outputs, random)
     title = f"{remote.name} on a UM-Bridge server"
     return model_from(name, title, f"UM-Bridge {VERSION:g}", fields, outputs, batch, random)
 
 
 def code_of_server(address: str) -> str:
     """Return a hash of the description of a model by its server: its code cannot be seen."""
-    remote = _known(address.partition(",")[0])
+    remote = _remote_model(address.partition(",")[0])
     sizes = remote.inputs, remote.outputs
     text = json.dumps([remote.name, VERSION, *sizes, remote.information], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @cache
-def _known(address: str) -> _RemoteModel:
+def _remote_model(address: str) -> _RemoteModel:
     server, name = split_address(address)
     try:
         information = call(server, "Info", patience=_SOON)
@@ -126,7 +172,7 @@ def _known(address: str) -> _RemoteModel:
         raise InputError(f"{address}: has {sum(sizes)} inputs")
     if not 0 < sum(outputs) <= _LARGEST or min(outputs) < 1:
         raise InputError(f"{address}: has outputs of sizes {outputs}")
-    return _RemoteModel(server, name, sizes, outputs, about)
+    return _RemoteModel((server,), name, sizes, outputs, about)
 
 
 def _vectors(count: int) -> list[str]:
@@ -138,66 +184,6 @@ def _names(sizes: tuple[int, ...]) -> list[str]:
     if len(sizes) == 1:
         return [f"x{i + 1}" for i in range(sizes[0])]
     return [f"x{v + 1}_{i + 1}" for v, size in enumerate(sizes) for i in range(size)]
-
-
-_ZEROS = "the server states no nominal values, so all inputs are 0: give others, --set x1=1"
-
-
-@dataclass(frozen=True)
-class _Evaluate:
-    """One call for a row."""
-
-    remote: _RemoteModel
-    servers: tuple[str, ...]
-    names: tuple[str, ...]
-    outputs: tuple[str, ...]
-    limit: float = inf  # time for a row [s]
-
-    def limited(self, seconds: float) -> Self:
-        """Return one that stops waiting for a row after a time."""
-        return replace(self, limit=seconds)
-
-    def __call__(self, **row: float | int) -> dict[str, Any]:
-        """Return the outputs of a row.
-
-        Raises
-        ------
-        ServerError, OverdueError
-        """
-        flat = [float(row[name]) for name in self.names]
-        vectors, first = [], 0
-        for size in self.remote.inputs:
-            vectors.append(flat[first : first + size])
-            first += size
-        config = {"seed": row["seed"]} if "seed" in row else {}
-        body = {"name": self.remote.name, "input": vectors, "config": config}
-        turn = next(_turns) % len(self.servers)
-        servers = self.servers[turn:] + self.servers[:turn]
-        try:
-            answer = call(servers, "Evaluate", body, limit=self.limit)
-        except ServerError as error:
-            if self.outputs or any(flat):
-                raise
-            raise ServerError(f"{error}; {_ZEROS}") from None
-        output = answer.get("output") if isinstance(answer, dict) else None
-        if not isinstance(output, list) or not all(isinstance(vector, list) for vector in output):
-            raise ServerError(f"{self.remote.server} answers Evaluate without a list of vectors")
-        if self.outputs:
-            return self._named(_numbers(output, answer.get(NEVER)))
-        names = _vectors(len(output))
-        return {n: v[0] if len(v) == 1 else v for n, v in zip(names, output, strict=True)}
-
-    def _named(self, output: list[list[float]]) -> dict[str, Any]:
-        """Return outputs of a server that describes them: vectors by name, then flags."""
-        described = self.remote.information[DESCRIBED]
-        columns = dict(zip(described["columns"], output, strict=True))
-        outputs: dict[str, Any] = {}
-        for name, entry in described["outputs"].items():
-            flags = columns.get(censored_name(name)) or [0.0] * len(columns[name])
-            both = zip(columns[name], flags, strict=True)
-            values = [Censored(value) if cut else value for value, cut in both]
-            outputs[name] = values if entry["shape"] else values[0]
-        return outputs
 
 
 def _bounds(low: float | None, high: float | None) -> tuple[float, float]:

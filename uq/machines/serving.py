@@ -2,6 +2,7 @@
 
 import socket
 from http.server import ThreadingHTTPServer
+from math import prod
 from threading import Lock
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from uq.contract import Floats, Model, Status
 from uq.errors import InputError, described
 from uq.machines.json_requests import RequestError, finite, invalid, json_server
+from uq.machines.returned import Returned, as_plain
 from uq.machines.um_bridge import DESCRIBED, NEVER, VERSION
 from uq.text.numbers import counted
 
@@ -123,6 +125,17 @@ class _Offered:
     def _described(self) -> dict[str, Any]:
         model, axes = self.model, self.model.coordinates(self._settings)
         declared = [(name, model.parameter(name)) for name in model.parameter_names]
+        returned = {
+            name: Returned(
+                output.unit,
+                output.meaning,
+                output.is_lifetime,
+                (prod(len(axes[dim]) for dim in output.dims),) * bool(output.dims),
+                output.may_be_undefined,
+                dict(output.scales),
+            )
+            for name, output in model.outputs.items()
+        }
         return {
             "version": model.version,
             "random": model.random,
@@ -137,16 +150,5 @@ class _Offered:
                 }
                 for name, parameter in declared
             ],
-            "outputs": {
-                name: {
-                    "unit": output.unit,
-                    "meaning": output.meaning,
-                    "life": output.is_lifetime,
-                    "shape": [int(np.prod([len(axes[dim]) for dim in output.dims]))]
-                    * bool(output.dims),
-                    "may_be_undefined": output.may_be_undefined,
-                    "scales": dict(output.scales),
-                }
-                for name, output in model.outputs.items()
-            },
+            "outputs": as_plain(returned),
         }

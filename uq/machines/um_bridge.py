@@ -18,8 +18,9 @@ from threading import Timer
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
 
+from uq.contract import Status
 from uq.errors import InputError, one_line
-from uq.machines.row_by_row import OverdueError
+from uq.machines.returned import RowError
 from uq.text.literals import read_number
 
 VERSION = 1.0
@@ -93,7 +94,7 @@ def call(
 
     Raises
     ------
-    ServerError, OverdueError
+    ServerError, RowError
     """
     began, rounds = time.monotonic(), 0
     until = began + limit
@@ -109,7 +110,8 @@ def call(
             except (OSError, http.client.HTTPException) as error:
                 now, reason = time.monotonic(), one_line(error) or type(error).__name__
                 if now > until:
-                    raise OverdueError(f"{address} did not answer within {limit:g} s") from None
+                    message = f"{address} did not answer within {limit:g} s"
+                    raise RowError(message, Status.TIMED_OUT) from None
                 _out[address] = now
         longest = _PATIENCE if patience is None else patience
         if _silent.issuperset(servers) or now - began > longest:
@@ -128,7 +130,7 @@ def _answer(server: str, request: str, body: Any, until: float) -> Any:
     connection = kind(parts.hostname or "", parts.port, timeout=_left(until))
     with closing(connection):
         connection.connect()
-        with _cut(connection.sock, _left(until)):
+        with cut_after(_left(until), connection.sock):
             data = None if body is None else json.dumps(body)
             headers = {"Content-Type": "application/json", "Connection": "close"}
             connection.request("GET" if body is None else "POST", f"/{request}", data, headers)
@@ -146,19 +148,35 @@ def _answer(server: str, request: str, body: Any, until: float) -> Any:
 
 
 @contextmanager
-def _cut(connection: socket.socket, seconds: float | None) -> Iterator[None]:
-    """Cut a connection after some seconds, however little comes through it at a time."""
+def cut_after(
+    seconds: float | None, connection: socket.socket, how: int = socket.SHUT_RDWR
+) -> Iterator[Timer]:
+    """Cut a connection after some seconds, however little comes through it at a time.
+
+    Parameters
+    ----------
+    seconds : float or None
+        None for never.
+    connection : socket
+    how : int
+        Which of its directions are cut.
+
+    Yields
+    ------
+    Timer
+        To be cancelled if the connection is to stay.
+    """
 
     def cut() -> None:
         with suppress(OSError):
-            connection.shutdown(socket.SHUT_RDWR)
+            connection.shutdown(how)
 
     timer = Timer(seconds or 0.0, cut)
     timer.daemon = True
     if seconds:
         timer.start()
     try:
-        yield
+        yield timer
     finally:
         timer.cancel()
 

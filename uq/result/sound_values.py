@@ -33,7 +33,7 @@ def value_faults(ds: xr.Dataset) -> Iterator[str]:
             if kept not in ds.data_vars or ds[kept].dims != ds[name].dims:
                 continue
             for values, is_complete in _pieces(ds[kept], complete):
-                absent = output.is_absent(values) & ~(output.may_be_undefined & np.isnan(values))
+                absent = output.is_invalid(values)
                 if absent[is_complete].any():
                     value = values[is_complete][absent[is_complete]][0]
                     yield f"'{kept}' {output.absence(value)}, in a row that did not fail"

@@ -76,7 +76,7 @@ def unknown(kind: str, name: str, allowed: Iterable[str]) -> str:
 
 
 def fault_of(
-    error: dict[str, Any], allowed_at: Callable[[Sequence[Any]], Iterable[str]] | None = None
+    error: dict[str, Any], allowed_at: Callable[[Sequence[Any]], tuple[str, Sequence[str]]]
 ) -> InputFault:
     """Return an error of pydantic as a fault.
 
@@ -84,16 +84,14 @@ def fault_of(
     ----------
     error : dict
         One of ``ValidationError.errors()``.
-    allowed_at : callable, optional
-        Place of an unknown key -> names that it may have.
+    allowed_at : callable
+        Place of an unknown key -> its kind in words, and the names that it may have.
     """
     path, kind = tuple(error["loc"]), error["type"]
     if kind == "missing":
         return InputFault(path, MISSING)
-    if kind == "extra_forbidden" and allowed_at is not None:
-        table = "key" if len(path) > 1 else "table"
-        return InputFault(
-            path, unknown(table, str(path[-1]), list(allowed_at(path))), error["input"]
-        )
+    if kind == "extra_forbidden":
+        name_kind, names = allowed_at(path)
+        return InputFault(path, unknown(name_kind, str(path[-1]), names), error["input"])
     reason = _REASONS.get(kind, "").format(**error.get("ctx", {}))
     return InputFault(path, reason or error["msg"], error["input"])

@@ -51,22 +51,19 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     output_faults = partial(_output_faults, model, settings)
     for name in analysis.get("outputs", ()):
         yield from output_faults(name, ("analysis", "outputs"), name)
-    for name, value in analysis.get("thresholds", {}).items():
-        path, no_number = ("analysis", "thresholds", name), "it has shares, not thresholds"
-        faults = list(output_faults(name, path, value, no_number))
-        yield from faults
-        for threshold in (value if isinstance(value, list) else [value]) * (not faults):
-            yield from _unit_faults(model, name, path, threshold)
-    for name, side in analysis.get("joint_bounds", {}).items():
-        path, no_number = ("analysis", "joint_bounds", name), "it has shares, not bounds"
-        yield from output_faults(name, path, side, no_number)
-    for name, side in analysis.get("wanted", {}).items():
-        path = ("analysis", "wanted", name)
-        faults = list(output_faults(name, path, side, "it has shares, not sides"))
-        yield from faults
-        if not faults and model.outputs and model.outputs[name].is_lifetime:
-            problem = "is a lifetime, whose model states if its end is wanted; leave it out"
-            yield InputFault(path, problem, side)
+    for key, nouns in _OF_NUMBERS.items():
+        for name, value in analysis.get(key, {}).items():
+            path = ("analysis", key, name)
+            faults = list(output_faults(name, path, value, f"it has shares, not {nouns}"))
+            yield from faults
+            if faults:
+                continue
+            if key == "thresholds":
+                for threshold in value if isinstance(value, list) else [value]:
+                    yield from _unit_faults(model, name, path, threshold)
+            elif key == "wanted" and model.outputs and model.outputs[name].is_lifetime:
+                problem = "is a lifetime, whose model states if its end is wanted; leave it out"
+                yield InputFault(path, problem, value)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
@@ -76,6 +73,10 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         if not faults and model.outputs:
             yield from _until_faults(model, name, until)
             yield from _element_faults(model, name, until, settings)
+
+
+_OF_NUMBERS = {"thresholds": "thresholds", "joint_bounds": "bounds", "wanted": "sides"}
+"""Keys of [analysis] for numeric outputs -> the nouns of their values."""
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[InputFault]:
@@ -213,7 +214,7 @@ def design_faults(tables: Tables) -> Iterator[InputFault]:
             )
     for key, problem in problems.items():
         yield InputFault(("design", key), problem, None if key == "until" else table[key])
-    several = _rows_of_a_sample(table) > 1
+    several = table.get("units", 1) * table.get("repeats", 1) > 1
     for key in [bound for bound in ("tolerance", "joint_bounds") if bound in asks]:
         why = ""
         if several:
@@ -269,11 +270,6 @@ def _index_faults(
 
 
 _SEVERAL = "and the units and repeats of one sample are not; set both to 1, or leave it out"
-
-
-def _rows_of_a_sample(table: Mapping[str, Any]) -> int:
-    """Return units times repeats of a [design]."""
-    return int(table.get("units", 1) * table.get("repeats", 1))
 
 
 def _nesting_problems(

@@ -1,7 +1,7 @@
 """The arrays that a model's ``batch`` must return, and which of their rows failed."""
 
-from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,44 +9,23 @@ from numpy.typing import NDArray
 from uq.contract import Mask, Model, Output, Status, censored_name
 
 
-class Column(NamedTuple):
-    """One array of a batch.
+def columns_of(model: Model, settings: Any) -> dict[str, NDArray[Any]]:
+    """Return the columns of a model's batch under these settings, in declared order.
 
-    Attributes
-    ----------
-    dtype : numpy.dtype
-    blank : float, int or bool
-        The value in rows that could not be computed.
-    shape : tuple of int
-        Of one row.
+    Returns
+    -------
+    dict of str to ndarray, shape (*dims)
+        A row that could not be computed: the type and shape of every row.
     """
-
-    dtype: np.dtype[Any]
-    blank: float
-    shape: tuple[int, ...]
-
-    def blanks(self, rows: int) -> NDArray[Any]:
-        """Return an array of blank rows."""
-        return np.full((rows, *self.shape), self.blank, dtype=self.dtype)
-
-
-def columns_of(model: Model, settings: Any) -> dict[str, Column]:
-    """Return the columns of a model's batch under these settings, in declared order."""
     coordinates = model.coordinates(settings)
-    columns = {}
+    columns: dict[str, NDArray[Any]] = {}
     for name, output in model.outputs.items():
         shape = tuple(len(coordinates[dim]) for dim in output.dims)
-        columns[name] = Column(np.dtype(np.float64), np.nan, shape)
-        if output.is_category:
-            columns[name] = Column(np.dtype(np.int8), -1, shape)
+        blank = np.int8(-1) if output.is_category else np.nan
+        columns[name] = np.full(shape, blank)
         if output.has_censored_flag:
-            columns[censored_name(name)] = Column(np.dtype(np.bool_), False, shape)
+            columns[censored_name(name)] = np.full(shape, False)
     return columns
-
-
-def blank_rows(columns: Mapping[str, Column], rows: int) -> dict[str, NDArray[Any]]:
-    """Return every column filled with its blank value."""
-    return {name: column.blanks(rows) for name, column in columns.items()}
 
 
 def failed_rows(status: NDArray[np.int8], required: Iterable[tuple[Output, NDArray[Any]]]) -> Mask:

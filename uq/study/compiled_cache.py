@@ -1,9 +1,4 @@
-"""numba's cache on disk, with a separate folder for each state of the sources.
-
-numba's own ``cache=True`` checks the file of a function only: after an edit of a file that it calls
-into, it would load stale code. Here the name of the folder is a hash of all sources on which a
-function can depend.
-"""
+"""numba's cache on disk, with a separate folder for each state of the sources."""
 
 import atexit
 import os
@@ -23,7 +18,7 @@ _models: set[str] = set()
 
 
 def keep_apart(module: str) -> None:
-    """Have numba cache compiled code in this way from now on in this process.
+    """Have numba cache compiled code by `SourcesLocator` from now on in this process.
 
     Parameters
     ----------
@@ -45,13 +40,12 @@ def _watch() -> None:
 def _install() -> None:
     from numba.core.caching import FunctionCache
 
-    places: list[Any] = FunctionCache._impl_class._locator_classes
-    places.insert(0, SourcesLocator)
+    FunctionCache._impl_class._locator_classes.insert(0, SourcesLocator)
 
 
 @cache
 def _fresh_folder() -> Path:
-    """Make a folder for this process alone: numba unpickles what lies there."""
+    """Make a folder for this process alone: numba unpickles its files."""
     folder = tempfile.mkdtemp(prefix=f"{DISTRIBUTION}-numba-")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return Path(folder)
@@ -59,6 +53,10 @@ def _fresh_folder() -> Path:
 
 class SourcesLocator:
     """The place of the compiled code of one function, as numba asks for it.
+
+    numba's own ``cache=True`` checks the file of a function only: after an edit of a file that it
+    calls into, it would load stale code. Here the name of the folder is a hash of all sources on
+    which a function can depend.
 
     Parameters
     ----------
@@ -84,7 +82,7 @@ class SourcesLocator:
         package = module.partition(".")[0]
         if package in own_packages() or (package not in _models and is_installed(package)):
             return None
-        if not sources_of(module).code:
+        if not sources_of(module)[0]:
             return None
         locator = cls(function, module)
         try:
@@ -121,8 +119,8 @@ def key_of(module: str) -> str:
     module : str
         Its full name.
     """
-    sources = sources_of(module)
-    whole = digest(sources.code)
-    for package in sorted({name.partition(".")[0] for name in sources.others}):
-        whole.update(repr(signature(package, sources.others)).encode())
+    code, others = sources_of(module)
+    whole = digest(code)
+    for package in sorted({name.partition(".")[0] for name in others}):
+        whole.update(repr(signature(package, others)).encode())
     return whole.hexdigest()[:16]

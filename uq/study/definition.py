@@ -88,7 +88,7 @@ class Study:
         return tuple(law.level for law in self.uncertain.values())
 
     def level(self, name: str) -> str:
-        """Return the level of a parameter that varies; one that equals another has the other's."""
+        """Return the level of a varying parameter; one that equals another has the same level."""
         law = self.uncertain[self.tied[name].equals if name in self.tied else name]
         return law.level
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Status
 from uq.errors import InputError, described
-from uq.study.columns import Column, blank_rows, columns_of
+from uq.study.columns import columns_of
 
 _WITH_OUTPUTS = (Status.OK, Status.OUT_OF_BUDGET)
 
@@ -71,7 +71,7 @@ def evaluate(
         When names or dtypes are wrong, or a status or category does not exist.
     """
     expected = columns_of(model, settings)
-    columns = blank_rows(expected, len(x))
+    columns = _blank_rows(expected, len(x))
     status = np.zeros(len(x), dtype=np.int8)
     messages: dict[int, str] = {}
     todo = [(0, len(x))]
@@ -94,17 +94,21 @@ def evaluate(
     _check_values(model, columns, status, messages)
     lost = ~np.isin(status, _WITH_OUTPUTS)
     for name, column in columns.items():
-        column[lost] = expected[name].blank
+        column[lost] = expected[name]
         if column.dtype.kind == "f":
             column[np.isnan(column)] = np.nan  # one bit pattern for NaN on all processors
     return Chunk(columns, status, _first_failures(status, messages, start))
 
 
 def lost_rows(model: Model, settings: Any, rows: int, fault: RowFailure, start: int = 0) -> Chunk:
-    """Return blank rows that one fault has cost; `start` as in `evaluate`."""
+    """Return blank rows, all lost by one fault; `start` as in `evaluate`."""
     status = np.full(rows, fault.status, dtype=np.int8)
-    columns = blank_rows(columns_of(model, settings), rows)
+    columns = _blank_rows(columns_of(model, settings), rows)
     return Chunk(columns, status, {fault.status.label: (start, fault.message)})
+
+
+def _blank_rows(columns: Mapping[str, NDArray[Any]], rows: int) -> dict[str, NDArray[Any]]:
+    return {name: np.full((rows, *blank.shape), blank) for name, blank in columns.items()}
 
 
 def joined(chunks: Sequence[Chunk]) -> Chunk:
@@ -121,8 +125,15 @@ def joined(chunks: Sequence[Chunk]) -> Chunk:
     )
 
 
+_STATUS = np.zeros((), np.int8)
+
+
 def _call(
-    model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], expected: Mapping[str, Column]
+    model: Model,
+    settings: Any,
+    x: Floats,
+    seed: NDArray[np.uint64],
+    expected: Mapping[str, NDArray[Any]],
 ) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]] | RowFailure:
     try:
         with np.errstate(all="ignore"):
@@ -130,41 +141,32 @@ def _call(
     except Exception as error:
         return RowFailure(Status.RAISED, described(error))
     if not isinstance(returned, tuple) or len(returned) not in (2, 3):
-        raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
+        raise _violation(model, "batch must return (outputs, status)")
     outputs, status, messages = (*returned, {})[:3]
-    _check_names(model, outputs, expected)
-    for name, column in (*expected.items(), ("status", _STATUS)):
-        array = status if name == "status" else outputs[name]
-        if not isinstance(array, np.ndarray):
-            raise KernelError(
-                f"model '{model.name}': '{name}' is a {type(array).__name__}, "
-                f"expected an array of {column.dtype}"
-            )
-        if array.dtype != column.dtype:
-            raise KernelError(
-                f"model '{model.name}': '{name}' is {array.dtype}, expected {column.dtype}"
-            )
-        if array.shape != (len(x), *column.shape):
-            wrong = f"'{name}' has shape {array.shape}, expected {(len(x), *column.shape)}"
-            return RowFailure(Status.BAD_SHAPE, wrong)
-    unknown = np.setdiff1d(status, list(Status))
-    if unknown.size:
-        raise KernelError(f"model '{model.name}': no such status: {unknown[0]}")
-    return outputs, status, messages
-
-
-_STATUS = Column(np.dtype(np.int8), 0, ())
-
-
-def _check_names(
-    model: Model, outputs: Mapping[str, object], expected: Mapping[str, Column]
-) -> None:
     faults = [
         *(f"returned no output '{name}'" for name in expected if name not in outputs),
         *(f"returned '{name}', which is not declared" for name in outputs if name not in expected),
     ]
     if faults:
-        raise KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
+        raise _violation(model, *faults)
+    for name, column in (*expected.items(), ("status", _STATUS)):
+        array = status if name == "status" else outputs[name]
+        if not isinstance(array, np.ndarray):
+            kind = type(array).__name__
+            raise _violation(model, f"'{name}' is a {kind}, expected an array of {column.dtype}")
+        if array.dtype != column.dtype:
+            raise _violation(model, f"'{name}' is {array.dtype}, expected {column.dtype}")
+        if array.shape != (len(x), *column.shape):
+            wrong = f"'{name}' has shape {array.shape}, expected {(len(x), *column.shape)}"
+            return RowFailure(Status.BAD_SHAPE, wrong)
+    unknown = np.setdiff1d(status, list(Status))
+    if unknown.size:
+        raise _violation(model, f"no such status: {unknown[0]}")
+    return outputs, status, messages
+
+
+def _violation(model: Model, *faults: str) -> KernelError:
+    return KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
 
 
 def _check_values(
@@ -178,15 +180,13 @@ def _check_values(
         values = columns[name].reshape(len(status), -1)
         if output.is_category:
             if np.any((values < -1) | (values >= len(output.categories))):
-                raise KernelError(f"model '{model.name}': '{name}' has an undeclared category")
+                raise _violation(model, f"'{name}' has an undeclared category")
             continue
-        legal = ~output.is_absent(values)
-        if output.may_be_undefined:
-            legal |= np.isnan(values)
-        guilty = (status == Status.OK) & ~legal.all(axis=1)
+        invalid = output.is_invalid(values)
+        guilty = (status == Status.OK) & invalid.any(axis=1)
         status[guilty] = Status.NON_FINITE
         for row in np.flatnonzero(guilty)[:1]:
-            messages[row] = f"'{name}' {output.absence(values[row][~legal[row]][0])}"
+            messages[row] = f"'{name}' {output.absence(values[row][invalid[row]][0])}"
 
 
 def _first_failures(

@@ -15,6 +15,7 @@ from pydantic import (
     BeforeValidator,
     Discriminator,
     Field,
+    GetPydanticSchema,
     Tag,
     TypeAdapter,
     ValidatorFunctionWrapHandler,
@@ -22,7 +23,7 @@ from pydantic import (
     WrapValidator,
     model_validator,
 )
-from pydantic_core.core_schema import CoreSchema, no_info_plain_validator_function
+from pydantic_core.core_schema import no_info_plain_validator_function
 
 from uq.errors import nearest
 from uq.indices.methods import METHODS
@@ -99,6 +100,7 @@ def _positive(value: float) -> float:
     return value
 
 
+_Count = Annotated[int, Field(ge=1, le=MAX_ROWS_OF_A_SAMPLE)]
 _B_LIFE = r"^B(\d{1,2}(\.\d{1,9})?)$"
 
 
@@ -204,18 +206,8 @@ class DesignTable(_Table):
         le=10_000,
         description="independent scrambles of the design: the source of confidence intervals",
     )
-    units: int = Field(
-        1,
-        ge=1,
-        le=MAX_ROWS_OF_A_SAMPLE,
-        description="of each sample: they have its shared inputs",
-    )
-    repeats: int = Field(
-        1,
-        ge=1,
-        le=MAX_ROWS_OF_A_SAMPLE,
-        description="of each unit: they differ by chance",
-    )
+    units: _Count = Field(1, description="of each sample: they have its shared inputs")
+    repeats: _Count = Field(1, description="of each unit: they differ by chance")
     second_order: bool = Field(False, description="saltelli only: also pairs of parameters")
     seed: int = Field(0, ge=0, lt=2**63, description="the same seed gives the same rows")
     file: str | None = Field(
@@ -256,19 +248,14 @@ def _kind(entry: Any) -> str:
     return "equals" if tied else "distribution"
 
 
-class _AnyLaw:
-    """One of the laws, as they are by the time that a file is read or its schema written."""
-
-    def __get_pydantic_core_schema__(self, law: Any, handler: Any) -> CoreSchema:
-        return no_info_plain_validator_function(law_of)
-
-    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        law_schema: dict[str, Any] = handler(any_law().core_schema)
-        return law_schema
-
+# The laws are those that exist by the time that a file is read or its schema written.
+_ANY_LAW = GetPydanticSchema(
+    lambda law, handler: no_info_plain_validator_function(law_of),
+    lambda schema, handler: handler(any_law().core_schema),
+)
 
 Entry = Annotated[
-    Annotated[Law, _AnyLaw(), Tag("distribution")] | Annotated[Tied, Tag("equals")],
+    Annotated[Law, _ANY_LAW, Tag("distribution")] | Annotated[Tied, Tag("equals")],
     Discriminator(_kind),
 ]
 """How a parameter varies: by a law, or as another does."""

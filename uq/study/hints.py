@@ -1,4 +1,4 @@
-"""Hints on what a study will lack, given before any row is computed.
+"""Hints on intervals, indices and bounds that a study will not give, before any row is computed.
 
 None of it is a fault: each may be meant.
 """
@@ -38,7 +38,7 @@ _LIFE = re.compile(
 
 
 def hints(study: "Study") -> list[str]:
-    """Return a sentence on each thing that a study will lack, with its remedy.
+    """Return a sentence with a remedy on each number that a study will not give.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def hints(study: "Study") -> list[str]:
 
 
 def undeclared_lives(model: Model, names: tuple[str, ...] = ()) -> Iterator[str]:
-    """Yield which outputs bear the name of a life, but are not declared as one.
+    """Yield a hint on each output that is named like a life, but not declared as one.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def _may_be_time(output: Output) -> bool:
 
 
 def _intervals(study: "Study") -> Iterator[str]:
-    """Yield that too few replicates, or samples of several rows, show no scatter."""
+    """Yield a hint where replicates, or samples of several rows, are too few for an interval."""
     design = study.design
     kind = DESIGNS[design.method]
     key, count, least = "replicates", design.replicates, REPLICATES
@@ -115,7 +115,7 @@ def _intervals(study: "Study") -> Iterator[str]:
 
 
 def _indices(study: "Study") -> Iterator[str]:
-    """Yield which sensitivity methods have too few groups of rows.
+    """Yield a hint on each sensitivity method that has too few groups of rows.
 
     The default of a plain sample is not asked for: who wants statistics needs fewer rows.
     """
@@ -130,7 +130,7 @@ def _indices(study: "Study") -> Iterator[str]:
 
 
 def _ends_of_samples(study: "Study") -> Iterator[str]:
-    """Yield which quantiles and bounds lie beyond all rows."""
+    """Yield a hint on quantiles and tolerance bounds that lie beyond all rows."""
     design, analysis = study.design, study.analysis
     rows = design.samples * design.replicates * design.rows_of_a_sample
     if DESIGNS[design.method].layout is not PLAIN:

@@ -20,14 +20,14 @@ from typing import Any
 
 from uq.contract import Model
 from uq.errors import InputError, choices, described, nearest
-from uq.files.paths import node
+from uq.files.paths import file_there
 from uq.machines.function import is_machine, model_of
 from uq.machines.returned import Returned, as_plain, from_plain
-from uq.study.compiled_cache import keep_apart, own_packages
+from uq.study.compiled_cache import keep_apart
 from uq.study.model_files import file_with
-from uq.study.namesakes import found_at, hidden_beside, namesake
+from uq.study.namesakes import hidden_beside, namesake
 from uq.study.provenance import provenance
-from uq.study.sources import fingerprint
+from uq.study.sources import fingerprint, found_at, own_packages
 
 GROUP = "vibrolife.models"
 
@@ -163,13 +163,7 @@ def _installed(name: str, folder: Path | None = None) -> EntryPoint:
 
 def _module_in(file: Path) -> str:
     """Return the name by which the module in a file can be imported."""
-    if kind := node(file):
-        raise InputError(f"{file}: is {kind}, not a file")
-    if not file.is_file():
-        neighbours = (
-            [path.name for path in file.parent.glob("*.py")] if file.parent.is_dir() else []
-        )
-        raise InputError(f"{file}: no such file{nearest(file.name, neighbours)}")
+    file_there(file)
     folder, name = str(file.absolute().parent), file.stem
     if folder not in sys.path:
         sys.path.append(folder)
@@ -223,7 +217,7 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
 
 
 def _remedy_of_missing(package: str) -> str:
-    """Return the advice for a package of which a module is missing."""
+    """Return the advice where a module of a package is missing."""
     if clash := namesake(package):
         return clash
     if place := found_at(package):

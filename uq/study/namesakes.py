@@ -1,31 +1,15 @@
-"""Other packages that bear the name of one of ours, such as a file ``models.py`` beside a script.
-
-Python takes the first that it finds.
-"""
+"""Other packages that bear the name of one of ours, such as a file ``models.py`` of a user."""
 
 import os
-from importlib.util import find_spec
 from pathlib import Path
 
-from uq.study.sources import DISTRIBUTION, INSTALLED, own_packages, sources_of
+from uq.study.sources import DISTRIBUTION, INSTALLED, found_at, own_packages, sources_of
 
 _HOUSE = Path(__file__).parents[2]  # our packages lie beside each other, however installed
 
 
-def found_at(package: str) -> Path | None:
-    """Return the file or folder in which Python finds a package; None if it finds none."""
-    try:
-        spec = find_spec(package)
-    except (ImportError, ValueError):  # ValueError: it was imported, but from nowhere
-        return None
-    if spec is None:
-        return None
-    places = [*(spec.submodule_search_locations or []), spec.origin]
-    return Path(places[0]) if places[0] else None
-
-
 def namesake(package: str) -> str:
-    """Return that Python finds another package under the name of one of our models'; "" if not.
+    """Return a message if Python finds another package under the name of one of our models'.
 
     Parameters
     ----------
@@ -35,7 +19,7 @@ def namesake(package: str) -> str:
     Returns
     -------
     str
-        A sentence with both places.
+        A sentence with both places; "" if Python finds ours.
     """
     first, ours = found_at(package), _HOUSE / package
     if package not in own_packages() or not ours.is_dir() or first is None or _is_same(first, ours):
@@ -62,14 +46,15 @@ def hidden_beside(module: str) -> str:
     str
         A sentence with both places; "" if Python finds what the module means.
     """
-    sources = sources_of(module)
-    names = [name.split(".") for name in (*sources.code, *sources.others)]
+    code, others = sources_of(module)
+    names = [name.split(".") for name in (*code, *others)]
+    place = found_at(module.partition(".")[0])
     for package in sorted(own_packages() & {first for first, *_ in names}):
         ours = _HOUSE / package
         modules = {rest[0] for first, *rest in names if first == package and rest}
-        if sources.root is None or namesake(package) or modules & {p.stem for p in ours.iterdir()}:
+        if place is None or namesake(package) or modules & {p.stem for p in ours.iterdir()}:
             continue
-        for beside in (sources.root / f"{package}.py", sources.root / package):
+        for beside in (place.with_name(f"{package}.py"), place.with_name(package)):
             if beside.exists() and not _is_same(beside, ours):
                 return (
                     f"imports '{package}', which Python finds in {ours} of {DISTRIBUTION}, not in"

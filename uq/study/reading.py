@@ -1,6 +1,7 @@
 """From the text of a study file to its tables: syntax and shape, one line per fault."""
 
-from functools import lru_cache
+from collections.abc import Sequence
+from functools import lru_cache, partial
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -77,7 +78,7 @@ def shape_faults(data: dict[str, Any]) -> list[InputFault]:
 
 
 def _is_meant(missing: InputFault, other: InputFault) -> bool:
-    """Return whether a missing key is the one that another fault suggests."""
+    """Return whether the misspelt key of another fault stands for a missing key."""
     *table, key = missing.path
     beside = missing.problem.startswith(MISSING) and other.path[:-1] == tuple(table)
     return beside and f"did you mean '{key}'?" in other.problem
@@ -122,29 +123,24 @@ def _remove(entries: Any, path: tuple[str | int, ...]) -> None:
 
 
 def _fault(error: dict[str, Any]) -> InputFault:
-    path, value, law = list(error["loc"]), error["input"], None
+    path, law = list(error["loc"]), None
     if path[0] == "uncertain" and len(path) > 2:
         # Pydantic puts into the path the kind of entry, and then the law's name.
         tied = path.pop(2) == "equals"
         law = Tied if tied else LAWS[path.pop(2)] if len(path) > 2 else None
     match error["type"]:
-        case "extra_forbidden":
-            kind, names = _allowed(path, law)
-            return InputFault(tuple(path), unknown(kind, str(path[-1]), names), value)
-        case "missing":
-            return InputFault(tuple(path), MISSING)
         case "union_tag_not_found":
-            for key, given in value.items():
+            for key, given in error["input"].items():
                 if meant := nearest(key, ["distribution"]):
                     return InputFault((*path, key), f"no such key{meant}", given)
             return InputFault((*path, "distribution"), f"{MISSING} (one of {', '.join(LAWS)})")
         case "union_tag_invalid":
             name = error["ctx"]["tag"]
             return InputFault((*path, "distribution"), unknown("law", name, LAWS), name)
-    return fault_of({**error, "loc": path})
+    return fault_of({**error, "loc": path}, partial(_allowed, law))
 
 
-def _allowed(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str]]:
+def _allowed(law: type[BaseModel] | None, path: Sequence[Any]) -> tuple[str, list[str]]:
     """Return the allowed keys in place of an unknown key: kind and names."""
     if law is not None:
         common = list(Law.model_fields)[1:] if law is not Tied else []  # last, but the source

@@ -5,6 +5,7 @@ and block b of its group. Where a sample has units and repeats, it has one block
 row = ((j * replicates + r) * units + u) * repeats + v for unit u and repeat v.
 """
 
+from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -104,7 +105,11 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
         keys = DESIGNS[table.method].layout.shared_seeds(group, block, labels)
     nested = np.divmod(within, table.repeats) if table.rows_of_a_sample > 1 else ()
     seeds = row_seeds(table.seed, replicate, *keys, *nested)
-    x = _imported(study, start, stop) if study.imported else _drawn(study, start, stop)
+    if study.imported:
+        columns = {name: numbers(text)[start:stop] for name, text in study.imported.items()}
+        x = _all_parameters(study, stop - start, columns)
+    else:
+        x = _drawn(study, start, stop)
     return Rows(x, seeds, replicate.astype(np.int32), group, block.astype(np.int16))
 
 
@@ -187,39 +192,28 @@ def _dependent(study: "Study") -> list[int]:
 
 def _by_their_laws(study: "Study", unit: Floats) -> Floats:
     """Map points of the unit cube, with their dependence, to all parameters of the model."""
-    x = _constants(study, len(unit))
-    names = study.model.parameter_names
-    scaled = []
-    for column, (name, law) in zip(unit.T, study.uncertain.items(), strict=True):
+    points = dict(zip(study.uncertain, unit.T, strict=True))
+    columns: dict[str, Floats] = {}
+    # Factors come after the inputs that they scale.
+    for name, law in sorted(study.uncertain.items(), key=lambda entry: entry[1].times is not None):
         # A contiguous copy: for strided data numpy may take another path with other last bits.
-        u = np.ascontiguousarray(column)
+        u, bounds = np.ascontiguousarray(points[name]), study.bounds(name)
         if law.times is None:
-            x[:, names.index(name)] = ppf_within(law, u, study.bounds(name))
+            columns[name] = ppf_within(law, u, bounds)
         else:
-            scaled.append((name, law, u))
-    for name, law, u in scaled:  # after the inputs that they scale
-        other, bounds = x[:, names.index(law.times)].copy(), study.bounds(name)
-        factor = ppf_between(law, u, *factor_ends(other, bounds))
-        x[:, names.index(name)] = np.clip(factor * other, *bounds)
-    return _with_ties(study, x)
+            other = columns[law.times]
+            factor = ppf_between(law, u, *factor_ends(other, bounds))
+            columns[name] = np.clip(factor * other, *bounds)
+    return _all_parameters(study, len(unit), columns)
 
 
-def _imported(study: "Study", start: int, stop: int) -> Floats:
-    """Return the inputs of the rows start..stop from the imported file."""
-    x = _constants(study, stop - start)
-    for name, column in study.imported.items():
-        x[:, study.model.parameter_names.index(name)] = numbers(column)[start:stop]
-    return _with_ties(study, x)
-
-
-def _constants(study: "Study", count: int) -> Floats:
-    x = np.empty((count, len(study.model.parameter_names)))
-    x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
-    return x
-
-
-def _with_ties(study: "Study", x: Floats) -> Floats:
+def _all_parameters(study: "Study", count: int, columns: Mapping[str, Floats]) -> Floats:
+    """Return rows of all parameters: those given, constants, and parameters that equal others."""
     names = study.model.parameter_names
+    x = np.empty((count, len(names)))
+    x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
+    for name, column in columns.items():
+        x[:, names.index(name)] = column
     for name, tied in study.tied.items():
         x[:, names.index(name)] = x[:, names.index(tied.equals)]
     return x

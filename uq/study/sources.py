@@ -15,7 +15,6 @@ from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.metadata import entry_points
 from importlib.util import find_spec, resolve_name
 from pathlib import Path
-from typing import NamedTuple
 
 DISTRIBUTION = "vibrolife"
 INSTALLED = ("site-packages", "dist-packages")
@@ -25,38 +24,27 @@ _IMPORTERS = ("import_module", "__import__")
 _FILES = ("/__init__.py", ".py", *EXTENSION_SUFFIXES)
 
 
-class Sources(NamedTuple):
-    """The sources of a module.
-
-    Attributes
-    ----------
-    code : dict of str to bytes
-        Module -> its source, or the machine code of an extension; empty if no file exists.
-    root : Path or None
-        The folder that contains the package.
-    others : set of str
-        Modules imported from elsewhere.
-    """
-
-    code: dict[str, bytes]
-    root: Path | None
-    others: set[str]
-
-
-def sources_of(module: str) -> Sources:
+def sources_of(module: str) -> tuple[dict[str, bytes], set[str]]:
     """Return the sources of a module and, recursively, of the modules that it imports.
 
     Parameters
     ----------
     module : str
         Its full name; it need not have been imported.
+
+    Returns
+    -------
+    code : dict of str to bytes
+        Module -> its source, or the machine code of an extension; empty if no file exists.
+    others : set of str
+        Modules imported from elsewhere.
     """
     package = module.partition(".")[0]
     root = _root(package)
     code: dict[str, bytes] = {}
     others: set[str] = set()
     if root is None:
-        return Sources(code, root, others)
+        return code, others
     beside = root.name not in INSTALLED
     todo, seen = {module}, set()
     while todo:
@@ -78,7 +66,7 @@ def sources_of(module: str) -> Sources:
                     inside |= _modules(home, first)
                 todo |= {above or name, *inside} - seen
         todo = {name for name in todo if name.partition(".")[0] != _PLATFORM}
-    return Sources(code, root, others)
+    return code, others
 
 
 def _without_marks(file: Path) -> bytes:
@@ -100,7 +88,7 @@ def fingerprint(module: str) -> str:
     module : str
         Its full name.
     """
-    code = sources_of(module).code
+    code, _ = sources_of(module)
     return digest(code).hexdigest()[:16] if code else ""
 
 
@@ -167,14 +155,20 @@ def _above(modules: Iterable[str]) -> set[str]:
     return {".".join(names[: i + 1]) for names in parts for i in range(len(names))}
 
 
-def _root(package: str) -> Path | None:
-    """Return the folder that contains a package, or a module that is a file."""
+def found_at(package: str) -> Path | None:
+    """Return the file or folder in which Python finds a package; None if it finds none."""
     try:
         spec = find_spec(package)
-    except (ImportError, ValueError):
+    except (ImportError, ValueError):  # ValueError: it was imported, but from nowhere
         return None
     places = [*(spec.submodule_search_locations or []), spec.origin] if spec else []
-    return Path(places[0]).parent if places and places[0] else None
+    return Path(places[0]) if places and places[0] else None
+
+
+def _root(package: str) -> Path | None:
+    """Return the folder that contains a package, or a module that is a file."""
+    place = found_at(package)
+    return place and place.parent
 
 
 def _edited(package: str) -> Path | None:

@@ -1,7 +1,7 @@
 """A study file to start from, written for one model."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import islice
 from math import isfinite
 from typing import Any
@@ -39,52 +39,44 @@ def template(model: Model, reference: str = "") -> str:
     str
         TOML.
     """
-    by_reference = reference not in ("", model.name)
     suited = ((n, _example_law(model.parameter(n), x)) for n, x in model.nominal.items())
     laws = dict(islice(((name, law) for name, law in suited if law), _UNCERTAIN))
     outputs = model.given(model.settings()).outputs
     numbers = [name for name, output in outputs.items() if not output.is_category]
-    return "\n".join(
-        [
-            "#:schema vibrolife-study.schema.json",
-            "# The line above lets an editor help; 'uq schema' writes that file.",
-            "# '#key = value' shows a default: remove the '#' and change it.",
-            "",
-            "[study]",
-            f"name = {toml(re.sub(r'[^A-Za-z0-9_-]', '-', model.name) + '-study')}",
-            *([f"# run with --model {_line(reference)}"] if by_reference else []),
-            f"model = {toml(model.name)}",
-            f"description = {toml(_line(model.title))}",
-            "",
-            "[design]",
-            *(f"# {name}: {design.meaning}" for name, design in DESIGNS.items()),
-            *_entries(DesignTable, _DESIGN, {"until": {"output": numbers[0], "half_width": 1.0}}),
-            "",
-            "[fixed]",
-            "# Parameters with a fixed value: the nominal one unless given here.",
-            *_fixed(model, laws),
-            "",
-            *_uncertain(model, laws),
-            "# Other laws and their arguments, in the parameter's unit:",
-            *_menu(),
-            "",
-            "[settings]",
-            *_settings(model),
-            "",
-            "[analysis]",
-            *_entries(
-                AnalysisTable,
-                {},
-                {
-                    "outputs": list(outputs),
-                    "tolerance": {"coverage": 0.95, "confidence": 0.95},
-                    "thresholds": {numbers[0]: 1.0},
-                    "sensitivity": ["first-order"],
-                },
-            ),
-            "",
-        ]
-    )
+    given_by = [] if reference in ("", model.name) else [f"# run with --model {_line(reference)}"]
+    designs = (f"# {name}: {design.meaning}" for name, design in DESIGNS.items())
+    design = _entries(DesignTable, _DESIGN, {"until": {"output": numbers[0], "half_width": 1.0}})
+    examples = {
+        "outputs": list(outputs),
+        "tolerance": {"coverage": 0.95, "confidence": 0.95},
+        "thresholds": {numbers[0]: 1.0},
+        "sensitivity": ["first-order"],
+    }
+    return f"""\
+#:schema vibrolife-study.schema.json
+# The line above lets an editor help; 'uq schema' writes that file.
+# '#key = value' shows a default: remove the '#' and change it.
+
+[study]
+name = {toml(re.sub(r"[^A-Za-z0-9_-]", "-", model.name) + "-study")}
+{_lines(given_by)}model = {toml(model.name)}
+description = {toml(_line(model.title))}
+
+[design]
+{_lines(designs)}{_lines(design)}
+[fixed]
+# Parameters with a fixed value: the nominal one unless given here.
+{_lines(_fixed(model, laws))}
+{_lines(_uncertain(model, laws))}# Other laws and their arguments, in the parameter's unit:
+{_lines(_menu())}
+[settings]
+{_lines(_settings(model))}
+[analysis]
+{_lines(_entries(AnalysisTable, {}, examples))}"""
+
+
+def _lines(lines: Iterable[str]) -> str:
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _example_law(parameter: Parameter, nominal: float) -> Law | None:

@@ -77,7 +77,7 @@ def duration(seconds: float | None) -> str:
     if seconds is None or not isfinite(seconds):
         return ""
     unit = time_unit(abs(seconds))
-    return "" if unit.name == "seconds" else f"{seconds / unit.seconds:.3g} {unit.name}"
+    return "" if unit.name == "seconds" else f"{seconds / unit.size:.3g} {unit.name}"
 
 
 def threshold(value: float, units: str) -> str:

@@ -38,27 +38,20 @@ def beside(number: str, unit: str) -> str:
     return f"{number}{between}{powers(unit)}"
 
 
-class TimeUnit(NamedTuple):
-    """A unit of time, its length [s], and the time [s] from which it is used."""
-
-    name: str
-    seconds: float
-    used_from: float
-
-
 _DAY = 86400.0
 _YEAR = 365.25 * _DAY
-_TIME_UNITS = (
-    TimeUnit("seconds", 1.0, 0.0),
-    TimeUnit("hours", 3600.0, 3600.0),
-    TimeUnit("days", _DAY, 2 * _DAY),
-    TimeUnit("years", _YEAR, 2 * _YEAR),
-)
+_TIME_UNITS = {
+    0.0: ReadableUnit("seconds", 1.0),
+    3600.0: ReadableUnit("hours", 3600.0),
+    2 * _DAY: ReadableUnit("days", _DAY),
+    2 * _YEAR: ReadableUnit("years", _YEAR),
+}
+"""Units of time by the time from which each is used [s]."""
 
 
-def time_unit(seconds: float) -> TimeUnit:
+def time_unit(seconds: float) -> ReadableUnit:
     """Return the usual unit of a time [s] that is not negative."""
-    return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
+    return [unit for shortest, unit in _TIME_UNITS.items() if seconds >= shortest][-1]
 
 
 def unit_of(units: str, typical: float) -> ReadableUnit:
@@ -80,7 +73,7 @@ def unit_of(units: str, typical: float) -> ReadableUnit:
     """
     size = abs(typical) if isfinite(typical) else 0.0
     if units == "s" and size < inf and time_unit(size).name != "seconds":
-        return ReadableUnit(*time_unit(size)[:2])
+        return time_unit(size)
     if units == "rad" and (size >= _SMALLEST_IN_DEGREES or size == 0):
         return ReadableUnit(DEGREES, pi / 180)
     if units == "1" or size == 0 or _SMALLEST <= size < _LARGEST:

@@ -3,7 +3,7 @@
 import pytest
 from own_machines import WEAR, WEAR_STUDY
 
-from uq.machines.returned import Returned, WrongReturnError, checked
+from uq.machines.returned import Returned, RowError, checked
 
 BOUNDED = (
     "from typing import Annotated\nimport uq\n"
@@ -105,7 +105,7 @@ def test_an_own_model_that_is_not_named_is_asked_for(uq, folder, write_function)
 
 
 def test_an_output_that_is_missing_is_named_with_what_was_returned_instead():
-    with pytest.raises(WrongReturnError) as caught:
+    with pytest.raises(RowError) as caught:
         list(checked({"strees": 1.0, "mass": 2.0}, {"stress": Returned()}))
     assert str(caught.value) == (
         "returned no 'stress' (it returned 'strees', 'mass'); did you mean 'strees'?"

@@ -9,7 +9,7 @@ from own_machines import PAD, PAD_PROGRAM, run_program
 from uq.contract import Status
 from uq.machines.machine_file import OutputTable
 from uq.machines.program_outputs import value_in
-from uq.machines.returned import WrongReturnError
+from uq.machines.returned import RowError
 
 
 def test_rows_are_those_of_the_program(uq, write_program, folder):
@@ -167,7 +167,7 @@ def test_a_number_is_read_as_it_is_written_or_refused(folder, file, how, text, e
     if isinstance(expected, float):
         assert value_in(folder, "y", output) == expected
     else:
-        with pytest.raises(WrongReturnError) as caught:
+        with pytest.raises(RowError) as caught:
             value_in(folder, "y", output)
         assert f"has no 'y' in '{file}': {expected}" in str(caught.value)
 

@@ -11,7 +11,7 @@ import pytest
 from wordings import sentence
 
 import models
-from uq.study import compiled_cache
+from uq.study.compiled_cache import SourcesLocator, keep_apart
 from uq.study.sources import signature
 
 COMMAND = Path(sys.executable).with_name("uq")
@@ -80,7 +80,7 @@ def kern(plant, monkeypatch):
     """Import a module that calls compiled code of another."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(plant.parent / "cache"))
     monkeypatch.syspath_prepend(plant.parent)
-    compiled_cache.keep_apart("plant")
+    keep_apart("plant")
     yield importlib.import_module("plant.kern")
     for name in ("plant", "plant.kern", "plant.helper"):
         del sys.modules[name]
@@ -109,7 +109,7 @@ def test_our_own_kernels_stay_where_they_are(kern):
     from models.numerics.multipliers import _square
 
     assert cache.folder_of(_square).name in Path(_square._cache.cache_path).parts
-    assert compiled_cache.SourcesLocator.from_function(_square.py_func, cache.__file__) is None
+    assert SourcesLocator.from_function(_square.py_func, cache.__file__) is None
 
 
 def test_of_our_machines_those_count_that_a_package_imports():
