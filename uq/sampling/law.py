@@ -52,19 +52,16 @@ class Law(BaseModel):
 
     @abstractmethod
     def frozen(self) -> Any:
-        """Return the law, before `truncate`, as a frozen `scipy.stats` distribution."""
+        """Return the law before any truncation: `cdf`, `sf`, `ppf`, `isf` and `logpdf`."""
 
-    def functions(self) -> Any:
-        """Return the law, before `truncate`, with its `cdf`, `sf`, `ppf`, `isf` and `logpdf`."""
-        return self.frozen()
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The ends of the truncation.
 
-    def parent(self) -> tuple[Any, float, float]:
-        """Return the functions of the law before any truncation, and the ends of the truncation.
-
-        Quantiles of a truncated law are best computed from those of its parent: that is faster,
-        and accurate in both tails.
+        Quantiles of a truncated law are best computed from those of the law before truncation: that
+        is faster, and accurate in both tails.
         """
-        return (self.functions(), *(self.truncate or (-inf, inf)))
+        return self.truncate or (-inf, inf)
 
     def kinks(self) -> tuple[float, ...]:
         """Return the places, ends apart, where the density is not smooth."""
