@@ -2,7 +2,10 @@
 
 from math import exp, log, log1p, sqrt
 
+import numpy as np
 from scipy import stats
+
+from uq.sampling.listed_values import Steps
 
 
 def _lognormal(law):
@@ -28,5 +31,10 @@ COUNTERPARTS = {
 
 def of_scipy(law):
     """Return a law, before `truncate`, as a frozen distribution with moments."""
-    counterpart = COUNTERPARTS.get(law.distribution)
-    return counterpart(law) if counterpart else law.frozen()
+    if counterpart := COUNTERPARTS.get(law.distribution):
+        return counterpart(law)
+    frozen = law.frozen()
+    if isinstance(frozen, Steps):
+        shares = np.diff(frozen.cumulated, prepend=0.0)
+        return stats.rv_discrete(values=(frozen.values, shares))
+    return frozen

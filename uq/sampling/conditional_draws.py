@@ -68,9 +68,11 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
         taken = np.take_along_axis(np.broadcast_to(values, order.shape), order, axis=-1)
         return taken.reshape(-1, order.shape[-1])
 
-    rows = _Rows.in_order(
-        normal_correlations(ranks),
-        order.reshape(-1, order.shape[-1]),
+    orders, which = np.unique(order.reshape(-1, order.shape[-1]), axis=0, return_inverse=True)
+    matrix = normal_correlations(ranks)[orders[:, :, None], orders[:, None, :]]
+    rows = _Rows(
+        np.asarray(np.linalg.cholesky(matrix)),
+        which.ravel(),
         ordered(np.where(changed, -np.inf, low[:, None])),
         ordered(np.where(changed, np.inf, high[:, None])),
         ordered(u[:, -1:]),
@@ -102,15 +104,6 @@ class _Rows:
     low: Floats
     high: Floats
     u: Floats
-
-    @classmethod
-    def in_order(
-        cls, matrix: Floats, order: NDArray[np.intp], low: Floats, high: Floats, u: Floats
-    ) -> Self:
-        """Return rows whose inputs are drawn in an order, shape (n, k): the place of each."""
-        orders, which = np.unique(order, axis=0, return_inverse=True)
-        factors = np.linalg.cholesky(matrix[orders[:, :, None], orders[:, None, :]])
-        return cls(np.asarray(factors), which.ravel(), low, high, u)
 
     def part(self, rows: NDArray[np.intp], u: Floats) -> Self:
         """Return a subset of these rows, for another draw."""

@@ -54,7 +54,7 @@ def columns_of_files(
             if file in tables["data"]:
                 text = _kept(tables["data"][file], column)
             else:
-                text = _as_text(_read(folder, file, column))
+                text = " ".join(map(repr, _read(folder, file, column).tolist()))
         except ValueError as error:
             fault = InputFault(path, str(error), file)
             if fault not in faults:  # one for all columns of a file that cannot be read
@@ -115,10 +115,6 @@ def _kept(columns: Mapping[str, str], column: str) -> str:
     except ValueError:
         raise ValueError(f"[data] is damaged: column '{column}' must be numbers") from None
     return columns[column]
-
-
-def _as_text(values: Floats) -> str:
-    return " ".join(map(repr, values.tolist()))
 
 
 def _read(folder: Path | None, file: str, column: str) -> Floats:
