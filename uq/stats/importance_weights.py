@@ -102,7 +102,8 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
             weights = smooth
         else:
             with np.errstate(invalid="ignore"):  # samples without weight
-                weights = raw * _of_rows(smooth / of_samples, part)
+                factors = np.nan_to_num(smooth / of_samples)
+            weights = raw * factors[np.unique(np.asarray(part), return_inverse=True)[1]]
     effective = effective_rows(per_sample(weights, part))
     return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
 
@@ -221,12 +222,6 @@ def per_sample(numbers: Floats, part: Replicates) -> Floats:
         return numbers
     _, place = np.unique(np.asarray(part), return_inverse=True)
     return np.bincount(place, weights=numbers).astype(float)
-
-
-def _of_rows(of_samples: Floats, part: Replicates) -> Floats:
-    """Return for each row what its sample has; nothing where that is not a number."""
-    _, place = np.unique(np.asarray(part), return_inverse=True)
-    return np.nan_to_num(of_samples)[place]
 
 
 def _are_few_values(ascending: Floats, count: int) -> bool:
