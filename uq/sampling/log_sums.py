@@ -92,7 +92,7 @@ class Sum:
 
     def __init__(self, first: "LogTerm | Sum", second: LogTerm):
         self._first, self._second = first, second
-        self.breaks = np.unique(np.add.outer(first.breaks, second.breaks))
+        self.breaks: Floats = np.unique(np.add.outer(first.breaks, second.breaks))
         coarse = self._pieces(_NODES)
         self.ends = np.array([*(low for low, _, _ in coarse), coarse[-1][1]])
         self.coefficients = np.array([c for _, _, c in coarse])

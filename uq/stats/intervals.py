@@ -309,7 +309,7 @@ def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) ->
     return sums[counts > 0] / counts[counts > 0]
 
 
-def replicates_of_some(replicate: Replicates, rows: Mask) -> Replicates:
+def replicates_of_some(replicate: Replicates, rows: NDArray[Any]) -> Replicates:
     """Return the replicate of each of some rows."""
     return None if replicate is None else replicate[rows]
 
