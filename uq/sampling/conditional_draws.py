@@ -1,4 +1,4 @@
-"""Dependent inputs drawn given the values of some of them, exactly under a Gaussian copula.
+"""Conditional draws of dependent inputs, exact under a Gaussian copula.
 
 On the scale of normal scores, a known value of a continuous law is a point, a known value of a
 discrete law an interval, and an unknown value lies anywhere. A row is drawn within these, one input
@@ -92,7 +92,7 @@ class _Rows:
     factors : ndarray, shape (m, k, k)
         Cholesky's, of the correlations in each order that occurs.
     order : ndarray of int, shape (n,)
-        Which of them is that of a row.
+        The factor of each row.
     low, high : ndarray, shape (n, k)
         Between which a score lies.
     u : ndarray, shape (n, k)

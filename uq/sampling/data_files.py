@@ -118,7 +118,7 @@ def _kept(columns: Mapping[str, str], column: str) -> str:
 
 
 def _read(folder: Path | None, file: str, column: str) -> Floats:
-    """Read a column; a `ValueError` says what is wrong."""
+    """Read a column; raise a `ValueError` that explains the fault."""
     if folder is None:
         raise ValueError("the text of this study does not contain the file's numbers")
     path = folder / file
@@ -170,7 +170,7 @@ def _names(lines: TextIO, mark: str) -> list[str]:
 
 
 def _number(row: list[str], names: list[str], place: int, line: int) -> float:
-    """Return the number in one cell of a row; a `ValueError` says what is wrong."""
+    """Return the number in one cell of a row; raise a `ValueError` that explains the fault."""
     if len(row) != len(names):
         cells = counted(len(row), "cell")
         raise ValueError(

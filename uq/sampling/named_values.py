@@ -14,7 +14,7 @@ from uq.errors import nearest, one_line
 
 
 def unknown_name(kind: str, name: str, model: Model, names: tuple[str, ...]) -> str:
-    """Return that a model has no such parameter, setting or output."""
+    """Return the message for a parameter, setting or output that a model does not have."""
     allowed = f" (allowed: {', '.join(names)})" if names else ", which has none"
     return f"no such {kind} of model '{model.name}'{nearest(name, names) or allowed}"
 

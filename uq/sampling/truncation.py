@@ -245,7 +245,7 @@ def law_problem(law: Law, parameter: Parameter) -> InputFault | None:
 
 
 def outside_share(law: Law, low: Any, high: Any) -> Any:
-    """Return the share of a law, after its truncation, that lies outside given ends.
+    """Return the probability of a law, after its truncation, outside given ends.
 
     Parameters
     ----------

@@ -114,7 +114,7 @@ def no_weights(rows: int, why: str) -> Smoothed:
 
 
 def carries_little(most: float, rows: int) -> bool:
-    """Whether no row of so many can carry more than a hundredth of what all carry."""
+    """Whether no row can carry more than a hundredth of the weight of all rows."""
     return rows_to_carry_little(most) <= rows
 
 
@@ -139,7 +139,9 @@ def worth_in_words(weights: Smoothed) -> str:
 
 
 def tail_shape(numbers: Floats) -> float:
-    """Return the shape of the law of the largest of some numbers [1]_, not negative.
+    """Return the shape of the generalised Pareto law of the largest numbers [1]_.
+
+    The numbers are not negative.
 
     Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
     where all others are equal, or the largest are a few values that many rows have, as under

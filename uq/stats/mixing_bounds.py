@@ -90,7 +90,7 @@ def mixing_bounds(
 
 
 def _ends(share: Floats, worth: Floats, part: Replicates) -> tuple[float, float]:
-    """Return the interval of a share of worlds; all that is possible where there is none."""
+    """Return the interval of a share of worlds, from 0 to 1 where none can be estimated."""
     if np.ptp(worth) > 0 or not np.isin(share, (0.0, 1.0)).all():
         low, high = weighted_share(share, worth, part).numbers[1:]
     else:

@@ -92,7 +92,7 @@ def fewest_rows(hits: list[Hits]) -> float:
 
 
 def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> Ends:
-    """Return an interval that is no narrower than those of hits, as far as these count.
+    """Return an interval at least as wide as the intervals of hits, by their extent.
 
     Parameters
     ----------
