@@ -13,8 +13,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.indices.index import IndexKind, Indices, Null, RefusedError
-from uq.indices.sample import DesignSample, Floats
+from uq.indices.sample import DesignSample
 from uq.indices.slices import has_many_equal
 from uq.stats.estimate import Estimate
 

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import (
@@ -11,7 +12,6 @@ from uq.stats.intervals import (
     ONE_ROW,
     UNKNOWN,
     Ends,
-    Floats,
     Replicates,
     beyond_outliers,
     by_replicate,
