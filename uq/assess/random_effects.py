@@ -11,7 +11,7 @@ from uq.contract import Floats
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows
 from uq.stats.intervals import ROUNDING, Replicates, share_interval
-from uq.stats.mixing_bounds import MixingBounds
+from uq.stats.mixing_bounds import mixing_bounds
 from uq.stats.weighted_means import EXACT, weighted_share
 
 FEWEST_WORLDS = 20
@@ -111,7 +111,7 @@ class Noisy:
     units that ended, as if these were binomial with as many units as give the scatter seen within
     worlds. The mean of the worlds' posteriors under this law replaces it [2]_: with little noise it
     is that of the worlds, whatever their law. The interval covers the error of the fit, and what
-    the counts allow whatever the law (`MixingBounds`).
+    the counts allow whatever the law (`mixing_bounds`).
 
     Parameters
     ----------
@@ -164,7 +164,9 @@ class Noisy:
         is_counted = bool(np.isin(ended, (0.0, 1.0)).all(where=np.isfinite(ended)))
         points = special.ndtr(self._z)
         of_counts = units if is_counted else size
-        self._bounds = MixingBounds(points, mean, of_counts, weights, worth, self._part, is_counted)
+        self._bounds = mixing_bounds(
+            points, mean, of_counts, weights, worth, self._part, is_counted
+        )
         size = np.minimum(size, _NARROWEST / self._cell**2)
         counts = np.stack([(mean * size).ravel(), ((1 - mean) * size).ravel()], axis=1)
         counts, place = np.unique(counts, axis=0, return_inverse=True)
@@ -187,7 +189,7 @@ class Noisy:
         estimate = weighted_share(pulls, self._worth, self._part, hits=[])
         if not isfinite(estimate.low):
             estimate = replace(estimate, low=estimate.value, high=estimate.value)
-        least, most = self._bounds.exceeding(probability)
+        least, most = self._bounds(probability)
         low, high = min(estimate.low, least), max(estimate.high, most)
         return replace(estimate, low=low, high=high, assumes=ASSUMES)
 

@@ -4,8 +4,9 @@ from math import floor
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.indices.index import ALL_NOISE, S1, ST, IndexKind, Indices, RefusedError
-from uq.indices.sample import DesignSample, Floats
+from uq.indices.sample import DesignSample
 from uq.sampling.unit_cube import HARMONICS
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import is_constant

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from itertools import combinations_with_replacement
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,7 +10,6 @@ from uq.indices.given_data import DUMMIES, beside_nulls, null_of, one_kind
 from uq.indices.index import S1, Indices, RefusedError
 from uq.indices.measures import first_order
 from uq.indices.residual_variance import (
-    Part,
     Residual,
     ordered_residual_variance,
     residual_variance,
@@ -19,7 +17,7 @@ from uq.indices.residual_variance import (
 )
 from uq.indices.sample import DesignSample
 from uq.stats.estimate import NOTHING, Estimate
-from uq.stats.intervals import upper_probability
+from uq.stats.intervals import Replicates, replicates_of_some, upper_probability
 from uq.stats.quantile_functions import student
 
 ENOUGH_ROWS = 200
@@ -82,25 +80,38 @@ def first_order_indices(sample: DesignSample) -> Indices:
     y = sample.values.reshape(len(sample.values), -1)
     y = y - y.mean(axis=0)
     names, lacks_rows = list(sample.inputs), len(y) < ENOUGH_ROWS
-    shares = _of_rows(sample.inputs, y, part)
+    values, products, widest, widest_sum = _shares(sample.inputs, y, part)
+
+    def unexplained(quantile: float) -> Estimate:
+        """Return 1 less the sum of all indices."""
+        value = float(1 - values.sum())
+        half = quantile * max(float(products.sum()), 0.0) ** 0.5
+        return Estimate(value, value - half - widest_sum[0], value + half + widest_sum[1])
+
     quantile = student(upper_probability(sample.confidence), len(y) - 1)
-    errors = quantile**2 * shares.products
+    errors = quantile**2 * products
     halves = np.sqrt(np.diag(errors))
     indices = {
-        name: Estimate(value, reason=_FEW) if lacks_rows else _estimate(value, half, widest)
-        for name, value, half, widest in zip(
-            names, shares.values.tolist(), halves.tolist(), shares.widest.T, strict=True
+        name: Estimate(value, reason=_FEW) if lacks_rows else _estimate(value, half, added)
+        for name, value, half, added in zip(
+            names, values.tolist(), halves.tolist(), widest.T, strict=True
         )
     }
-    products = {
+    half_products = {
         (names[i], names[j]): float(errors[i, j])
         for i, j in combinations_with_replacement(range(len(names)), 2)
     }
     lacking = {name: index.reason for name, index in indices.items() if index.reason}
     notes = tuple(f"S1 of {name} has no interval: {why}" for name, why in lacking.items())
     if not lacking:
-        sure = student(upper_probability(_IMPOSSIBLE), len(y) - 1)
-        _refuse_more_than_all(shares.unexplained(sure))
+        left = unexplained(student(upper_probability(_IMPOSSIBLE), len(y) - 1))
+        if left.high < 0:
+            total, low, high = (1 - end for end in (left.value, left.high, left.low))
+            raise RefusedError(
+                f"S1 of all inputs add up to {total:.2f} ({low:.2f} to {high:.2f}), which cannot"
+                " be: the output changes within a few rows of an input, or the inputs depend on"
+                " each other"
+            )
     nulls = {}
     if lacking and sample.nulls and len(np.unique(y)) == 2:
         nulls = {S1: null_of(_without_effect(y, part), len(names))}
@@ -109,63 +120,38 @@ def first_order_indices(sample: DesignSample) -> Indices:
         {S1: indices},
         (f"S1 {_FEW}",) if lacks_rows else notes,
         nulls,
-        half_products=products,
+        half_products=half_products,
         rows_factors=factors,
-        unexplained=NOTHING if lacking else shares.unexplained(quantile),
+        unexplained=NOTHING if lacking else unexplained(quantile),
     )
 
 
-def _refuse_more_than_all(left: Estimate) -> None:
-    """Refuse indices whose sum significantly exceeds 1."""
-    if left.high < 0:
-        total, low, high = (1 - end for end in (left.value, left.high, left.low))
-        raise RefusedError(
-            f"S1 of all inputs add up to {total:.2f} ({low:.2f} to {high:.2f}), which cannot be:"
-            " the output changes within a few rows of an input, or the inputs depend on each other"
-        )
-
-
-def _without_effect(y: Floats, part: Part) -> Floats:
+def _without_effect(y: Floats, part: Replicates) -> Floats:
     """Return the first-order indices of inputs without effect."""
     every = variance(y, part)
     orders = np.random.default_rng(0).random((DUMMIES, len(y))).argsort(axis=1)
-    parts = [None if part is None else part[order] for order in orders]
     left = [
-        ordered_residual_variance(y[order], replicate)
-        for order, replicate in zip(orders, parts, strict=True)
+        ordered_residual_variance(y[order], replicates_of_some(part, order)) for order in orders
     ]
     return 1 - np.array(left) / every
 
 
-class _OfRows(NamedTuple):
-    """Indices of k inputs, with the variances and covariances of their errors.
+def _shares(
+    columns: Mapping[str, Floats], y: Floats, part: Replicates
+) -> tuple[Floats, Floats, Floats, list[float]]:
+    """Estimate the indices of k inputs, with the variances and covariances of their errors.
 
-    Attributes
-    ----------
+    Returns
+    -------
     values : ndarray, shape (k,)
     products : ndarray, shape (k, k)
         Variances and covariances of their errors.
     widest : ndarray, shape (2, k)
-        What one more row as influential as the most influential changes: of the lower and of the
-        upper end.
-    widest_left : ndarray, shape (2,)
-        The same of what no single input explains.
+        The change of the lower and of the upper end by one more row as influential as the most
+        influential.
+    widest_sum : list of float
+        The same change of both ends of the share that no single input explains.
     """
-
-    values: Floats
-    products: Floats
-    widest: Floats
-    widest_left: Floats
-
-    def unexplained(self, quantile: float) -> Estimate:
-        """Return 1 less the sum of all indices."""
-        value = float(1 - self.values.sum())
-        half = quantile * max(float(self.products.sum()), 0.0) ** 0.5
-        low, high = self.widest_left.tolist()
-        return Estimate(value, value - half - low, value + half + high)
-
-
-def _of_rows(columns: Mapping[str, Floats], y: Floats, part: Part) -> _OfRows:
     n, every = len(y), variance(y, part)
     squares = np.sum(y**2, axis=1)
     values, influences, noises = [], [], []
@@ -181,8 +167,8 @@ def _of_rows(columns: Mapping[str, Floats], y: Floats, part: Part) -> _OfRows:
     scatter = influence @ influence.T / (n - 1) + np.diag(noises)
     widest = np.array([influence.max(axis=1), -influence.min(axis=1)]) / n
     of_all = influence.sum(axis=0)
-    widest_left = np.array([-of_all.min(), of_all.max()]) / n
-    return _OfRows(np.array(values), scatter / n, widest, widest_left)
+    widest_sum = (np.array([-of_all.min(), of_all.max()]) / n).tolist()
+    return np.array(values), scatter / n, widest, widest_sum
 
 
 def _beyond(left: Residual, influence: Floats, value: float, every: float) -> float:

@@ -13,8 +13,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.indices.index import IndexKind, Indices, Null, RefusedError
-from uq.indices.sample import DesignSample, Floats
+from uq.indices.sample import DesignSample
 from uq.indices.slices import has_many_equal
 from uq.stats.estimate import Estimate
 
@@ -82,10 +83,10 @@ def beside_nulls(
 
 def null_of(reached: Floats, inputs: int) -> Null:
     """Return the limits for one input without effect, and for the largest of several."""
-    return Null(float(reached.max()), largest_of(inputs, reached) if inputs > 1 else np.nan)
+    return Null(float(reached.max()), _largest_of(inputs, reached) if inputs > 1 else np.nan)
 
 
-def largest_of(inputs: int, idle: Floats) -> float:
+def _largest_of(inputs: int, idle: Floats) -> float:
     """Return an upper 95 % limit of the largest index of several inputs without effect.
 
     Parameters

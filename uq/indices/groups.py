@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.indices.index import IndexKind
-from uq.indices.sample import Floats
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import CONFIDENCE, scatter_interval, upper_probability
 from uq.stats.quantile_functions import student

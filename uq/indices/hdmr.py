@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.indices.index import S1, S2, SHAPLEY, ST, Indices, Null, RefusedError
-from uq.indices.sample import DesignSample, Floats
+from uq.indices.sample import DesignSample
 from uq.stats.estimate import Estimate
 
 EXPLAINED = 0.8

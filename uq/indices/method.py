@@ -1,4 +1,4 @@
-"""A sensitivity method: the rows it needs, its estimate, and what that means."""
+"""A sensitivity method: the rows it needs, its estimate, and the meaning of its indices."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -206,7 +206,7 @@ def piloted_by(design: Design) -> str | None:
 
 
 def designs_for(method: str) -> tuple[str, ...]:
-    """Return the designs that feed a method; none where there is no such method."""
+    """Return the designs that feed a method; none if the method does not exist."""
     return tuple(name for name, design in DESIGNS.items() if method in fed_by(design))
 
 

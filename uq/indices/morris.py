@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.indices.groups import Values, pooled_with_intervals
 from uq.indices.index import IndexKind, Indices, RefusedError
 from uq.indices.method import NO_EFFECT
-from uq.indices.sample import DesignSample, Floats
+from uq.indices.sample import DesignSample
 from uq.sampling.unit_cube import STEP
 from uq.stats.intervals import ROUNDING, is_constant, sized
 

@@ -114,7 +114,10 @@ def _errors(sample: DesignSample, parts: Floats) -> Floats:
     y = (y - y.mean(axis=(0, 1))).reshape(n, rows, -1)  # with the elements of a whole output
     enough = n * rows * (1 - 1 / FOLDS) / ROWS_EACH
     most = min(enough, MOST_TERMS, MOST_NUMBERS / (n * rows))
-    terms = terms_of(_used(sample), sample.matrix, most)
+    # Inputs that never change the output by themselves are left out: if they have no effect, paths
+    # show that exactly.
+    used = np.isfinite(sample.scores[0, 0, 0]) & changes_alone(sample).any(axis=0)
+    terms = terms_of(np.flatnonzero(used).tolist(), sample.matrix, most)
     if not terms:
         return errors
     values = products(sample.scores[sample.whole], terms, sample.matrix)
@@ -134,13 +137,3 @@ def _errors(sample: DesignSample, parts: Floats) -> Floats:
 def _products_of(left: Floats, right: Floats) -> Floats:
     """Return the cross products of columns, summed over paths and rows."""
     return np.asarray(np.tensordot(left, right, axes=((0, 1), (0, 1))))
-
-
-def _used(sample: DesignSample) -> list[int]:
-    """Return the places of the inputs of the polynomial.
-
-    Inputs that never change the output by themselves are excluded: if they have no effect, paths
-    show that exactly.
-    """
-    has_scores = np.isfinite(sample.scores[0, 0, 0])
-    return np.flatnonzero(has_scores & changes_alone(sample).any(axis=0)).tolist()

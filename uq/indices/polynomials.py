@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from functools import lru_cache
 from itertools import combinations, combinations_with_replacement, permutations
 from math import comb, factorial, prod, sqrt
-from typing import NamedTuple
 
 import numpy as np
 
@@ -19,23 +18,6 @@ MOST_TOGETHER = 12
 
 Term = tuple[int, ...]
 """The places of the scores in a product, in order; a power repeats its place."""
-
-
-class Form(NamedTuple):
-    """The Shapley values of a sum of products, as quadratic forms in their weights.
-
-    Attributes
-    ----------
-    terms : list of int
-        Which of the products.
-    inputs : list of int
-        Which of the inputs.
-    matrices : ndarray, shape (inputs, terms, terms)
-    """
-
-    terms: list[int]
-    inputs: list[int]
-    matrices: Floats
 
 
 def terms_of(places: Sequence[int], matrix: Floats, most: float) -> tuple[Term, ...]:
@@ -123,37 +105,45 @@ def shapley_values(weights: Floats, terms: Sequence[Term], matrix: Floats) -> Fl
        and 4.9.
     """
     effects = np.zeros(len(matrix))
-    for form in _forms(tuple(terms), matrix.tobytes()):
-        form_weights = weights[form.terms]
-        effects[form.inputs] += np.einsum("itu,tu->i", form.matrices, form_weights @ form_weights.T)
+    for indices, inputs, matrices in _forms(tuple(terms), matrix.tobytes()):
+        form_weights = weights[indices]
+        effects[inputs] += np.einsum("itu,tu->i", matrices, form_weights @ form_weights.T)
     return effects
 
 
 @lru_cache(maxsize=8)
-def _forms(terms: tuple[Term, ...], matrix: bytes) -> list[Form]:
-    """Return the forms of products that share their inputs: all others are uncorrelated."""
+def _forms(terms: tuple[Term, ...], matrix: bytes) -> list[tuple[list[int], list[int], Floats]]:
+    """Return the Shapley values of a sum of products, as quadratic forms in their weights.
+
+    Returns
+    -------
+    list of (terms, inputs, matrices)
+        A form for the products that share their inputs, since all others are uncorrelated: the
+        places of the products and of the inputs, and a matrix for each input, shape (inputs,
+        terms, terms).
+    """
     flat = np.frombuffer(matrix)
     square = flat.reshape(round(sqrt(len(flat))), -1)
     groups, together = _groups(square), defaultdict[tuple[int, ...], list[int]](list)
     for i, term in enumerate(terms):
         together[_inputs_of(term, groups)].append(i)
-    return [_form(terms, indices, inputs, square) for inputs, indices in together.items()]
+    return [
+        (indices, list(inputs), _matrices([terms[i] for i in indices], inputs, square))
+        for inputs, indices in together.items()
+    ]
 
 
-def _form(
-    terms: tuple[Term, ...], indices: list[int], inputs: tuple[int, ...], matrix: Floats
-) -> Form:
+def _matrices(terms: list[Term], inputs: tuple[int, ...], matrix: Floats) -> Floats:
     """Return the form of a group of products, by subsets of their inputs: L. S. Shapley (1953)."""
     d = len(inputs)
-    matrices = np.zeros((d, len(indices), len(indices)))
+    matrices = np.zeros((d, len(terms), len(terms)))
     for size in range(1, d + 1):
         for subset in combinations(range(d), size):
-            given = [inputs[i] for i in subset]
-            explained = _explained([terms[i] for i in indices], given, matrix)
+            explained = _explained(terms, [inputs[i] for i in subset], matrix)
             share = np.full(d, -1 / (d - size) / comb(d, size) if size < d else 0.0)
             share[list(subset)] = 1 / size / comb(d, size)
             matrices += share[:, None, None] * explained
-    return Form(indices, list(inputs), matrices)
+    return matrices
 
 
 def _explained(terms: list[Term], given: list[int], matrix: Floats) -> Floats:

@@ -5,8 +5,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.contract import Floats
 from uq.indices.index import IndexKind, RefusedError
-from uq.indices.sample import DesignSample, Floats
+from uq.indices.sample import DesignSample
 from uq.indices.slices import by_slices, even_cuts
 
 MIN_SLICES = 5

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
+from uq.stats.intervals import Replicates, replicates_of_some
 
 LEAST_LAGS = 8
 """Fewer lags than this leave the intercept of a parabola too noisy."""
@@ -19,9 +20,6 @@ _FEWEST_EQUAL = 5  # rows with one value that show the variance at this value
 _MOST_NEIGHBOURS = 30
 _BENT = 3.0  # standard errors by which fewer lags may differ
 _JUMP = 16.0  # a squared residual from one side this many times that from the other side
-
-Part = NDArray[np.integer] | None
-"""Independent replicate of each row; None where rows are independent."""
 
 
 class Residual(NamedTuple):
@@ -46,7 +44,7 @@ class Residual(NamedTuple):
     excess: float
 
 
-def variance(y: Floats, part: Part = None) -> float:
+def variance(y: Floats, part: Replicates = None) -> float:
     """Return the unbiased variance, summed over elements.
 
     Parameters
@@ -70,12 +68,12 @@ def _pair_sum(y: Floats) -> float:
     return float(len(y) * np.sum((y - y.mean(axis=0)) ** 2))
 
 
-def ordered_residual_variance(y: Floats, part: Part = None) -> float:
+def ordered_residual_variance(y: Floats, part: Replicates = None) -> float:
     """Estimate the residual variance alone, from rows in the order of an input without ties."""
-    return variance(y, part) if len(y) <= 2 * LEAST_LAGS else _extrapolated(y, part).left
+    return variance(y, part) if len(y) <= 2 * LEAST_LAGS else _extrapolated(y, part)[2]
 
 
-def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
+def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual:
     """Estimate the variance of an output that is left when an input is known.
 
     Parameters
@@ -118,9 +116,9 @@ def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
     rest = order[np.repeat(~shared, counts)]
     if len(rest) <= 2 * LEAST_LAGS:  # too few for lags: one group, whatever their values
         alike, rest = [*alike, rest], rest[:0]
-    residuals = [(rows, _of_equal(y[rows], _of(part, rows))) for rows in alike]
+    residuals = [(rows, _of_equal(y[rows], replicates_of_some(part, rows))) for rows in alike]
     if len(rest):
-        residuals.append((rest, _of_neighbours(y[rest], _of(part, rest))))
+        residuals.append((rest, _of_neighbours(y[rest], replicates_of_some(part, rest))))
     residuals = [(rows, left) for rows, left in residuals if np.isfinite(left.variance)]
     kept = sum(len(rows) for rows, _ in residuals)
     squares = np.zeros(len(y))
@@ -134,11 +132,7 @@ def residual_variance(x: Floats, y: Floats, part: Part = None) -> Residual:
     return Residual(total, squares, noise, excess)
 
 
-def _of(part: Part, rows: NDArray[np.intp]) -> Part:
-    return None if part is None else part[rows]
-
-
-def _of_equal(y: Floats, part: Part) -> Residual:
+def _of_equal(y: Floats, part: Replicates) -> Residual:
     """Return the residual variance of rows with one value of the input."""
     n = len(y)
     if n < 2:
@@ -148,7 +142,7 @@ def _of_equal(y: Floats, part: Part) -> Residual:
     return Residual(variance(y, part), squares, 2 * level**2 / (n - 1), 4 * level**2 / n)
 
 
-def _of_neighbours(y: Floats, part: Part) -> Residual:
+def _of_neighbours(y: Floats, part: Replicates) -> Residual:
     """Return the residual variance of rows in the order of the input."""
     number, lags, left, bend = _extrapolated(y, part)
     squares, local, smoothed = _squared_residuals(y, number, left)
@@ -160,27 +154,28 @@ def _of_neighbours(y: Floats, part: Part) -> Residual:
     return Residual(left, squares * _times_used(lags, len(y)), noise, excess)
 
 
-class _Extrapolated(NamedTuple):
-    """The residual variance at no lag, from the number of lags and the lags that are used.
+def _extrapolated(y: Floats, part: Replicates) -> tuple[int, tuple[int, ...], float, float]:
+    """Extrapolate the residual variance to no lag.
 
-    And the square of what fewer lags change beyond the noise.
+    Returns
+    -------
+    number : int
+        Number of lags.
+    lags : tuple of int
+        That are used.
+    left : float
+        The residual variance.
+    bend : float
+        The square of what fewer lags change beyond the noise.
     """
-
-    number: int
-    lags: tuple[int, ...]
-    left: float
-    bend: float
-
-
-def _extrapolated(y: Floats, part: Part) -> _Extrapolated:
     number = _number_of_lags(y, part)
     lags = _lags(number, len(y), part)
     if len(lags) < _FEWEST_LAGS:
-        return _Extrapolated(number, lags, np.nan, 0.0)
+        return number, lags, np.nan, 0.0
     halves = np.array([_half_square(y, part, lag) for lag in lags])
     lags, bend = _unbent(y, part, lags, halves)
     left = float(np.array(_weights(lags)) @ halves[: len(lags)])
-    return _Extrapolated(min(number, len(lags)), lags, left, bend)
+    return min(number, len(lags)), lags, left, bend
 
 
 def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
@@ -198,7 +193,7 @@ def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
     return np.cumsum(changes)
 
 
-def _lags(number: int, rows: int, part: Part) -> tuple[int, ...]:
+def _lags(number: int, rows: int, part: Replicates) -> tuple[int, ...]:
     """Return the first lags at which enough rows are of different replicates."""
     if part is None:
         return tuple(range(1, number + 1))
@@ -215,20 +210,20 @@ def _weights(lags: tuple[int, ...]) -> tuple[float, ...]:
     return tuple(fitted[0].tolist())
 
 
-def _intercept(y: Floats, part: Part, lags: tuple[int, ...]) -> float:
+def _intercept(y: Floats, part: Replicates, lags: tuple[int, ...]) -> float:
     if len(lags) < _FEWEST_LAGS:
         return np.nan
     weights = zip(lags, _weights(lags), strict=True)
     return float(sum(weight * _half_square(y, part, lag) for lag, weight in weights))
 
 
-def _used(part: Part, lag: int) -> float:
+def _used(part: Replicates, lag: int) -> float:
     """Return the share of pairs of rows at this lag that belong to two replicates."""
     return 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
 
 
 def _unbent(
-    y: Floats, part: Part, lags: tuple[int, ...], halves: Floats
+    y: Floats, part: Replicates, lags: tuple[int, ...], halves: Floats
 ) -> tuple[tuple[int, ...], float]:
     """Return the lags, or the first half of them where both together follow no parabola.
 
@@ -257,7 +252,7 @@ def _unbent(
     return lags, bend
 
 
-def _half_square(y: Floats, part: Part, lag: int) -> float:
+def _half_square(y: Floats, part: Replicates, lag: int) -> float:
     """Return half the mean squared difference of rows at this lag."""
     steps = y[lag:] - y[:-lag]
     if part is None:  # the counts of both ends make up for the pairs that are lacking
@@ -271,7 +266,7 @@ def _half_square(y: Floats, part: Part, lag: int) -> float:
     return float(counts @ np.sum(steps**2, axis=1) / (2 * counts.sum()))
 
 
-def _number_of_lags(y: Floats, part: Part) -> int:
+def _number_of_lags(y: Floats, part: Replicates) -> int:
     n = len(y)
     most = int(max(min(n // 8, 1.2 * n**0.55, _MOST_LAGS), LEAST_LAGS))
     every = variance(y, part)

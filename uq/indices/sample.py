@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
-from uq.stats.intervals import CONFIDENCE, is_constant
+from uq.stats.intervals import CONFIDENCE, Replicates, is_constant, replicates_of_some
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class DesignSample:
     quantiles: Mapping[str, float] = field(default_factory=dict)
     confidence: float = CONFIDENCE
     nulls: bool = True
-    replicate: NDArray[np.intp] | None = None
+    replicate: Replicates = None
     difference: tuple[str, str] | None = None
 
     @classmethod
@@ -94,7 +94,7 @@ class DesignSample:
             values=self.values[kept],
             inputs={name: column[kept] for name, column in self.inputs.items()},
             groups=alone(len(kept)),
-            replicate=None if self.replicate is None else self.replicate[kept],
+            replicate=replicates_of_some(self.replicate, kept),
         )
 
 

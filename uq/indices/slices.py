@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.indices.sample import Floats
+from uq.contract import Floats
 
 LEAST_ROWS = 10
 """A value of an input with fewer rows than this has no slice of its own."""

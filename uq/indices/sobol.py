@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.indices.groups import (
     Values,
     effective_rows,
@@ -16,7 +17,7 @@ from uq.indices.groups import (
 )
 from uq.indices.index import S1, S2, ST, IndexKind, Indices, RefusedError
 from uq.indices.method import NO_VARIANCE, UNSEEN
-from uq.indices.sample import DesignSample, Floats
+from uq.indices.sample import DesignSample
 from uq.sampling.layouts import NOISE
 
 MIN_GROUPS = 8

@@ -1,4 +1,4 @@
-"""Dependent inputs drawn given the values of some of them, exactly under a Gaussian copula.
+"""Conditional draws of dependent inputs, exact under a Gaussian copula.
 
 On the scale of normal scores, a known value of a continuous law is a point, a known value of a
 discrete law an interval, and an unknown value lies anywhere. A row is drawn within these, one input
@@ -68,9 +68,11 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
         taken = np.take_along_axis(np.broadcast_to(values, order.shape), order, axis=-1)
         return taken.reshape(-1, order.shape[-1])
 
-    rows = _Rows.in_order(
-        normal_correlations(ranks),
-        order.reshape(-1, order.shape[-1]),
+    orders, which = np.unique(order.reshape(-1, order.shape[-1]), axis=0, return_inverse=True)
+    matrix = normal_correlations(ranks)[orders[:, :, None], orders[:, None, :]]
+    rows = _Rows(
+        np.asarray(np.linalg.cholesky(matrix)),
+        which.ravel(),
         ordered(np.where(changed, -np.inf, low[:, None])),
         ordered(np.where(changed, np.inf, high[:, None])),
         ordered(u[:, -1:]),
@@ -90,7 +92,7 @@ class _Rows:
     factors : ndarray, shape (m, k, k)
         Cholesky's, of the correlations in each order that occurs.
     order : ndarray of int, shape (n,)
-        Which of them is that of a row.
+        The factor of each row.
     low, high : ndarray, shape (n, k)
         Between which a score lies.
     u : ndarray, shape (n, k)
@@ -102,15 +104,6 @@ class _Rows:
     low: Floats
     high: Floats
     u: Floats
-
-    @classmethod
-    def in_order(
-        cls, matrix: Floats, order: NDArray[np.intp], low: Floats, high: Floats, u: Floats
-    ) -> Self:
-        """Return rows whose inputs are drawn in an order, shape (n, k): the place of each."""
-        orders, which = np.unique(order, axis=0, return_inverse=True)
-        factors = np.linalg.cholesky(matrix[orders[:, :, None], orders[:, None, :]])
-        return cls(np.asarray(factors), which.ravel(), low, high, u)
 
     def part(self, rows: NDArray[np.intp], u: Floats) -> Self:
         """Return a subset of these rows, for another draw."""

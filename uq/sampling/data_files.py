@@ -54,7 +54,7 @@ def columns_of_files(
             if file in tables["data"]:
                 text = _kept(tables["data"][file], column)
             else:
-                text = _as_text(_read(folder, file, column))
+                text = " ".join(map(repr, _read(folder, file, column).tolist()))
         except ValueError as error:
             fault = InputFault(path, str(error), file)
             if fault not in faults:  # one for all columns of a file that cannot be read
@@ -117,12 +117,8 @@ def _kept(columns: Mapping[str, str], column: str) -> str:
     return columns[column]
 
 
-def _as_text(values: Floats) -> str:
-    return " ".join(map(repr, values.tolist()))
-
-
 def _read(folder: Path | None, file: str, column: str) -> Floats:
-    """Read a column; a `ValueError` says what is wrong."""
+    """Read a column; raise a `ValueError` that explains the fault."""
     if folder is None:
         raise ValueError("the text of this study does not contain the file's numbers")
     path = folder / file
@@ -174,7 +170,7 @@ def _names(lines: TextIO, mark: str) -> list[str]:
 
 
 def _number(row: list[str], names: list[str], place: int, line: int) -> float:
-    """Return the number in one cell of a row; a `ValueError` says what is wrong."""
+    """Return the number in one cell of a row; raise a `ValueError` that explains the fault."""
     if len(row) != len(names):
         cells = counted(len(row), "cell")
         raise ValueError(

@@ -3,14 +3,12 @@
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uq.contract import Floats
 from uq.sampling.input_faults import InputFault
 from uq.sampling.unit_cube import Points, inside
 
 Matrix = tuple[tuple[float, ...], ...]
-Places = NDArray[np.int_]
 
 _LEAST_EIGENVALUE = 1e-9
 _NEAREST = 2e-9  # to -1 or 1; of two inputs alone the least eigenvalue then is large enough
@@ -116,10 +114,10 @@ def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
     for i, j in combinations(range(k), 2):
         rest = np.array([other for other in range(k) if other not in (i, j)], dtype=int)
         pair = np.array([i, j])
-        if not all(_is_definite(_part(matrix, s, s)) for s in (np.append(rest, p) for p in pair)):
+        if not all(_is_definite(matrix[np.ix_(s, s)]) for s in (np.append(rest, p) for p in pair)):
             continue
-        explained = np.linalg.solve(_part(matrix, rest, rest), _part(matrix, rest, pair))
-        both = _part(matrix, pair, rest) @ explained
+        explained = np.linalg.solve(matrix[np.ix_(rest, rest)], matrix[np.ix_(rest, pair)])
+        both = matrix[np.ix_(pair, rest)] @ explained
         half = np.sqrt((1 - both[0, 0]) * (1 - both[1, 1]))
         ends = both[0, 1] + np.array([-half, half])
         thousandths = 6000 / np.pi * np.arcsin(np.clip(ends, -1, 1) / 2)
@@ -132,10 +130,6 @@ def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
         which = f"that of '{names[i]}' with '{names[j]}', {ranks[i][j]!r},"
         return f"given the others, {which} must lie {between}"
     return f"multiply all but the diagonal by {_most(ranks):.2f} or less"
-
-
-def _part(matrix: Floats, rows: Places, columns: Places) -> Floats:
-    return matrix[rows][:, columns]
 
 
 def _most(ranks: Matrix) -> float:

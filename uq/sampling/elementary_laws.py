@@ -7,7 +7,7 @@ They have the methods of `scipy.stats` that are used here, and their bits, but n
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import pi, sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy  # which imports scipy.special when it is first used
@@ -16,7 +16,9 @@ _LOG_ROOT_2_PI = np.log(np.sqrt(2 * pi))
 
 
 class Elementary(ABC):
-    """A law whose values are a function of a standard variable."""
+    """A law whose values are a function of a standard normal or standard uniform variable."""
+
+    uniform: ClassVar[bool] = False
 
     @abstractmethod
     def score(self, x: Any) -> Any:
@@ -27,56 +29,29 @@ class Elementary(ABC):
         """Return the values of the standard variable."""
 
     @abstractmethod
-    def cdf(self, x: Any) -> Any:
-        """Return P(X <= x)."""
-
-    @abstractmethod
-    def sf(self, x: Any) -> Any:
-        """Return P(X > x)."""
-
-    @abstractmethod
-    def ppf(self, p: Any) -> Any:
-        """Return the value with P(X <= value) = p, for p in (0, 1)."""
-
-    @abstractmethod
-    def isf(self, q: Any) -> Any:
-        """Return the value with P(X > value) = q, for q in (0, 1)."""
-
-    @abstractmethod
     def logpdf(self, x: Any) -> Any:
         """Return the logarithm of the density."""
 
-
-class _OfNormal(Elementary):
     def cdf(self, x: Any) -> Any:
-        return scipy.special.ndtr(self.score(x))
+        """Return P(X <= x)."""
+        z = self.score(x)
+        return np.clip(z, 0.0, 1.0) if self.uniform else scipy.special.ndtr(z)
 
     def sf(self, x: Any) -> Any:
-        return scipy.special.ndtr(-self.score(x))
+        """Return P(X > x)."""
+        return 1.0 - self.cdf(x) if self.uniform else scipy.special.ndtr(-self.score(x))
 
     def ppf(self, p: Any) -> Any:
-        return self.value(scipy.special.ndtri(p))
+        """Return the value with P(X <= value) = p, for p in (0, 1)."""
+        return self.value(p if self.uniform else scipy.special.ndtri(p))
 
     def isf(self, q: Any) -> Any:
-        return self.value(-scipy.special.ndtri(q))
-
-
-class _OfUniform(Elementary):
-    def cdf(self, x: Any) -> Any:
-        return np.clip(self.score(x), 0.0, 1.0)
-
-    def sf(self, x: Any) -> Any:
-        return 1.0 - self.cdf(x)
-
-    def ppf(self, p: Any) -> Any:
-        return self.value(p)
-
-    def isf(self, q: Any) -> Any:
-        return self.value(1.0 - q)
+        """Return the value with P(X > value) = q, for q in (0, 1)."""
+        return self.value(1.0 - q if self.uniform else -scipy.special.ndtri(q))
 
 
 @dataclass(frozen=True)
-class NormalLaw(_OfNormal):
+class NormalLaw(Elementary):
     """Normal law of a mean and a standard deviation."""
 
     mean: float
@@ -93,7 +68,7 @@ class NormalLaw(_OfNormal):
 
 
 @dataclass(frozen=True)
-class LogNormalLaw(_OfNormal):
+class LogNormalLaw(Elementary):
     """Law whose logarithm is normal, of a median and the logarithm's standard deviation."""
 
     median: float
@@ -115,8 +90,10 @@ class LogNormalLaw(_OfNormal):
 
 
 @dataclass(frozen=True)
-class UniformLaw(_OfUniform):
+class UniformLaw(Elementary):
     """Uniform law of a lower end and a width."""
+
+    uniform = True
 
     lower: float
     width: float
@@ -133,8 +110,10 @@ class UniformLaw(_OfUniform):
 
 
 @dataclass(frozen=True)
-class LogUniformLaw(_OfUniform):
+class LogUniformLaw(Elementary):
     """Law whose logarithm is uniform, between two ends."""
+
+    uniform = True
 
     lower: float
     upper: float

@@ -52,46 +52,36 @@ class Law(BaseModel):
 
     @abstractmethod
     def frozen(self) -> Any:
-        """Return the law, before `truncate`, as a frozen `scipy.stats` distribution."""
+        """Return the law before any truncation: `cdf`, `sf`, `ppf`, `isf` and `logpdf`."""
 
-    def functions(self) -> Any:
-        """Return the law, before `truncate`, with its `cdf`, `sf`, `ppf`, `isf` and `logpdf`."""
-        return self.frozen()
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The ends of the truncation.
 
-    def parent(self) -> tuple[Any, float, float]:
-        """Return the functions of the law before any truncation, and the ends of the truncation.
-
-        Quantiles of a truncated law are best computed from those of its parent: that is faster,
-        and accurate in both tails.
+        Quantiles of a truncated law are best computed from those of the law before truncation: that
+        is faster, and accurate in both tails.
         """
-        return (self.functions(), *(self.truncate or (-inf, inf)))
+        return self.truncate or (-inf, inf)
 
     def kinks(self) -> tuple[float, ...]:
         """Return the places, ends apart, where the density is not smooth."""
         return ()
 
     @model_validator(mode="after")
-    def _check_order(self) -> Self:
+    def _check_arguments(self) -> Self:
+        """Refuse arguments in the wrong order, an incomplete choice, and an empty truncation."""
         names = self._ascending
         values = [getattr(self, name) for name in names]
         if values and (values != sorted(values) or values[0] == values[-1]):
             wanted = (" <= " if len(names) > 2 else " < ").join(names)
             given = ", ".join(f"{name} = {getattr(self, name)!r}" for name in names)
             raise ValueError(f"must have {wanted}: {given}")
-        return self
-
-    @model_validator(mode="after")
-    def _check_either(self) -> Self:
-        names = {name for arguments in self.either for name in arguments}
-        if names and names & self.model_fields_set not in map(set, self.either):
+        alternatives = {name for arguments in self.either for name in arguments}
+        if alternatives and alternatives & self.model_fields_set not in map(set, self.either):
             name = vars(self)["distribution"]
             article = "an" if name[0] in "aeiou" else "a"
             choice = ", or ".join(" and ".join(arguments) for arguments in self.either)
             raise ValueError(f"{article} {name} law takes either {choice}")
-        return self
-
-    @model_validator(mode="after")
-    def _check_truncation(self) -> Self:
         if self.truncate and not self.truncate[0] < self.truncate[1]:
             low, high = self.truncate
             raise ValueError(f"truncate must have lower < upper: [{low!r}, {high!r}]")

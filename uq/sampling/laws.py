@@ -4,7 +4,6 @@ To add one: its class, a file with a `uq.sampling.law.Law`, and a line here. Stu
 it, and schema, templates, tables and documentation show it.
 """
 
-from collections.abc import Iterable
 from functools import lru_cache, reduce
 from operator import or_
 from typing import Annotated, Any, get_args
@@ -14,13 +13,9 @@ from pydantic import Field, TypeAdapter
 from uq.sampling import listed_values, scipy_laws
 from uq.sampling.law import Law
 
-
-def _named(laws: Iterable[type[Law]]) -> dict[str, type[Law]]:
-    return {get_args(law.model_fields["distribution"].annotation)[0]: law for law in laws}
-
-
-LAWS = _named(
-    (
+LAWS: dict[str, type[Law]] = {
+    get_args(law.model_fields["distribution"].annotation)[0]: law
+    for law in (
         scipy_laws.Uniform,
         scipy_laws.LogUniform,
         scipy_laws.Normal,
@@ -38,7 +33,7 @@ LAWS = _named(
         listed_values.Empirical,
         listed_values.Histogram,
     )
-)
+}
 """Name in a study file -> law, in the order in which laws are listed."""
 
 

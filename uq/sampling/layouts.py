@@ -73,34 +73,30 @@ def _of_curves(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[P
     return np.zeros_like(group), block
 
 
-def _sample(parameters: tuple[str, ...], second_order: bool, random: bool) -> tuple[str, ...]:
-    return ("sample",)
-
-
 def _crossed(parameters: tuple[str, ...], second_order: bool, random: bool) -> tuple[str, ...]:
     mirrored = [f"BA_{name}" for name in parameters] if second_order else []
     noise = [NOISE] if random else []
     return ("A", *(f"AB_{name}" for name in parameters), *mirrored, "B", *noise)
 
 
-def _steps(parameters: tuple[str, ...], second_order: bool, random: bool) -> tuple[str, ...]:
-    return tuple(f"step_{i}" for i in range(len(parameters) + 1))
-
-
-def _places(parameters: tuple[str, ...], second_order: bool, random: bool) -> tuple[str, ...]:
-    return ("A", *(f"AB_{i}" for i in range(1, len(parameters))), "B")
-
-
-def _curves(parameters: tuple[str, ...], second_order: bool, random: bool) -> tuple[str, ...]:
-    return tuple(f"curve_{name}" for name in parameters)
-
-
-PLAIN = Layout(("row with a value", "rows with a value"), _sample, own_seeds)
+PLAIN = Layout(("row with a value", "rows with a value"), lambda *_: ("sample",), own_seeds)
 CROSSED = Layout(("whole group", "whole groups"), _crossed, _of_ends)
 TRAJECTORIES = Layout(
-    ("whole trajectory", "whole trajectories"), _steps, _of_groups, one_at_a_time=True
+    ("whole trajectory", "whole trajectories"),
+    lambda parameters, *_: tuple(f"step_{i}" for i in range(len(parameters) + 1)),
+    _of_groups,
+    one_at_a_time=True,
 )
 PATHS = Layout(
-    ("whole path", "whole paths"), _places, _of_groups, one_at_a_time=True, given_the_rest=True
+    ("whole path", "whole paths"),
+    lambda parameters, *_: ("A", *(f"AB_{i}" for i in range(1, len(parameters))), "B"),
+    _of_groups,
+    one_at_a_time=True,
+    given_the_rest=True,
 )
-CURVES = Layout(("whole curve", "whole curves"), _curves, _of_curves, by_block=True)
+CURVES = Layout(
+    ("whole curve", "whole curves"),
+    lambda parameters, *_: tuple(f"curve_{name}" for name in parameters),
+    _of_curves,
+    by_block=True,
+)

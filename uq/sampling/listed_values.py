@@ -51,15 +51,6 @@ class Steps(NamedTuple):
         """Return the least value with P(X > value) <= q."""
         return self.ppf(1.0 - np.asarray(q))
 
-    def mean(self) -> float:
-        """Return the mean."""
-        return float(self.values @ np.diff(self.cumulated, prepend=0.0))
-
-    def std(self) -> float:
-        """Return the standard deviation."""
-        square = (self.values - self.mean()) ** 2 @ np.diff(self.cumulated, prepend=0.0)
-        return float(np.sqrt(square))
-
 
 @lru_cache(maxsize=64)
 def _steps(values: tuple[float, ...], weights: tuple[float, ...] | None) -> Steps:

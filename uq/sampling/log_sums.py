@@ -1,7 +1,6 @@
 """The law of a sum of independent terms, each a multiple of the logarithm of an input."""
 
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -21,29 +20,6 @@ _DEEPEST = 12
 _HALVINGS = 50
 
 
-class Term(Protocol):
-    """A random number.
-
-    Attributes
-    ----------
-    breaks : ndarray, shape (k,)
-        Ascending; its ends, beyond which its probability is negligible, and the places between
-        them where its density is not smooth.
-    """
-
-    breaks: Floats
-
-    @property
-    def moments(self) -> tuple[float, float]:
-        """Its mean and variance."""
-
-    def below(self, value: Floats, /) -> Floats:
-        """Return the probability of less than each value."""
-
-    def at(self, z: Floats, /) -> Floats:
-        """Return the quantiles at the probabilities of standard normal quantiles."""
-
-
 class LogTerm:
     """A multiple of the logarithm of an input.
 
@@ -55,6 +31,12 @@ class LogTerm:
         On which the law is conditioned.
     exponent : float
         Not zero.
+
+    Attributes
+    ----------
+    breaks : ndarray, shape (k,)
+        Ascending; its ends, beyond which its probability is negligible, and the places between
+        them where its density is not smooth.
     """
 
     def __init__(self, law: Law, bounds: tuple[float, float], exponent: float):
@@ -99,7 +81,7 @@ class Sum:
 
     Parameters
     ----------
-    first : Term
+    first : LogTerm or Sum
     second : LogTerm
 
     Raises
@@ -108,9 +90,9 @@ class Sum:
         The probabilities are not accurate to `ACCURACY`.
     """
 
-    def __init__(self, first: Term, second: LogTerm):
+    def __init__(self, first: "LogTerm | Sum", second: LogTerm):
         self._first, self._second = first, second
-        self.breaks = np.unique(np.add.outer(first.breaks, second.breaks))
+        self.breaks: Floats = np.unique(np.add.outer(first.breaks, second.breaks))
         coarse = self._pieces(_NODES)
         self.ends = np.array([*(low for low, _, _ in coarse), coarse[-1][1]])
         self.coefficients = np.array([c for _, _, c in coarse])
@@ -178,6 +160,10 @@ class Sum:
         inner = self._first.below(value[:, None, None] - self._second.at(at))
         probability: Floats = (density * inner).sum(axis=(1, 2))
         return probability
+
+
+Term = LogTerm | Sum
+"""A random number, with its `breaks`, its `moments`, and its probabilities and quantiles."""
 
 
 def normal_rule(z: Floats, nodes: int) -> tuple[Floats, Floats]:

@@ -14,7 +14,7 @@ from uq.errors import nearest, one_line
 
 
 def unknown_name(kind: str, name: str, model: Model, names: tuple[str, ...]) -> str:
-    """Return that a model has no such parameter, setting or output."""
+    """Return the message for a parameter, setting or output that a model does not have."""
     allowed = f" (allowed: {', '.join(names)})" if names else ", which has none"
     return f"no such {kind} of model '{model.name}'{nearest(name, names) or allowed}"
 
@@ -85,7 +85,9 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
             continue
         with suppress(ValidationError):
             strict: TypeAdapter[Any] = TypeAdapter(types[name], config=ConfigDict(strict=True))
-            values[name] = strict.validate_python(_frozen(_as_word(model, name, value)))
+            # A number stands for a word where the setting allows words such as nan and inf.
+            is_word = isinstance(value, float) and model.setting(name).choices
+            values[name] = strict.validate_python(_frozen(str(value) if is_word else value))
         if name not in values or not _allowed(model, name, values[name]):
             problems[name] = f"must be {_type_in_words(model, name, types[name])}"
     if problems:
@@ -105,11 +107,6 @@ def fault_lines(
         for name, problem in problems.items()
         if problem
     ]
-
-
-def _as_word(model: Model, name: str, value: Any) -> Any:
-    """Return a number as a word where the setting allows words such as ``nan`` and ``inf``."""
-    return str(value) if isinstance(value, float) and model.setting(name).choices else value
 
 
 def _frozen(value: Any) -> Any:

@@ -1,7 +1,7 @@
 """The laws of an uncertain parameter: names and arguments; scipy.stats does the rest.
 
-Each law is a small frozen table, as in a study file, with its `scipy.stats` counterpart. The most
-common ones are computed without it (`uq.sampling.elementary_laws`).
+Each law is a small frozen table, as in a study file, with its `scipy.stats` counterpart, or for the
+most common ones with one of `uq.sampling.elementary_laws`.
 `uq.sampling.listed_values` has the laws of listed values, `uq.sampling.laws` all laws.
 """
 
@@ -25,9 +25,6 @@ class Uniform(Law):
     upper: float
 
     def frozen(self) -> Any:
-        return scipy.stats.uniform(loc=self.lower, scale=self.upper - self.lower)
-
-    def functions(self) -> Any:
         return UniformLaw(self.lower, self.upper - self.lower)
 
 
@@ -41,9 +38,6 @@ class LogUniform(Law):
     upper: Positive
 
     def frozen(self) -> Any:
-        return scipy.stats.loguniform(a=self.lower, b=self.upper)
-
-    def functions(self) -> Any:
         return LogUniformLaw(self.lower, self.upper)
 
 
@@ -55,9 +49,6 @@ class Normal(Law):
     sd: Positive
 
     def frozen(self) -> Any:
-        return scipy.stats.norm(loc=self.mean, scale=self.sd)
-
-    def functions(self) -> Any:
         return NormalLaw(self.mean, self.sd)
 
 
@@ -73,17 +64,13 @@ class TruncatedNormal(Law):
     upper: float
 
     def frozen(self) -> Any:
-        return scipy.stats.truncnorm(
-            a=(self.lower - self.mean) / self.sd,
-            b=(self.upper - self.mean) / self.sd,
-            loc=self.mean,
-            scale=self.sd,
-        )
+        return NormalLaw(self.mean, self.sd)
 
-    def parent(self) -> tuple[Any, float, float]:
-        """Return the normal law before truncation, and the ends of the truncation."""
-        lower, upper = self.truncate or (self.lower, self.upper)
-        return NormalLaw(self.mean, self.sd), max(lower, self.lower), min(upper, self.upper)
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The ends of both truncations."""
+        lower, upper = super().ends
+        return max(lower, self.lower), min(upper, self.upper)
 
 
 class LogNormal(Law):
@@ -105,18 +92,11 @@ class LogNormal(Law):
     sigma: Positive | None = Field(None, description="standard deviation of the logarithm")
 
     def frozen(self) -> Any:
-        median, sigma = self._median_and_sigma()
-        return scipy.stats.lognorm(s=sigma, scale=median)
-
-    def functions(self) -> Any:
-        return LogNormalLaw(*self._median_and_sigma())
-
-    def _median_and_sigma(self) -> tuple[float, float]:
         if self.mean is not None and self.cv is not None:
             variance = log1p(self.cv * self.cv)
-            return exp(log(self.mean) - variance / 2), sqrt(variance)
+            return LogNormalLaw(exp(log(self.mean) - variance / 2), sqrt(variance))
         assert self.median is not None and self.sigma is not None
-        return self.median, self.sigma
+        return LogNormalLaw(self.median, self.sigma)
 
 
 class Triangular(Law):

@@ -200,12 +200,12 @@ def _condition(law: Law, bounds: tuple[float, float]) -> _Condition:
 
 def _tightened(law: Law, low: Any, high: Any) -> tuple[Any, Any]:
     """Return the range of a law: given ends, tightened by its own truncation."""
-    _, lower, upper = law.parent()
+    lower, upper = law.ends
     return np.maximum(low, lower), np.minimum(high, upper)
 
 
 def _shares(law: Law, low: Any, high: Any) -> _Condition:
-    parent, _, _ = law.parent()
+    parent = law.frozen()
     # The lower end itself is inside, which matters where it has a probability of its own.
     end = np.nextafter(low, -np.inf) if law.discrete else low
     with np.errstate(all="ignore"):
@@ -245,7 +245,7 @@ def law_problem(law: Law, parameter: Parameter) -> InputFault | None:
 
 
 def outside_share(law: Law, low: Any, high: Any) -> Any:
-    """Return the share of a law, after its truncation, that lies outside given ends.
+    """Return the probability of a law, after its truncation, outside given ends.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ def outside_share(law: Law, low: Any, high: Any) -> Any:
     float, ndarray of shape (n,), or None
         None if it cannot be computed.
     """
-    parent, lower, upper = law.parent()
+    lower, upper = law.ends
     truncated = _shares(law, lower, upper)
     ends = _shares(law, *_tightened(law, low, high))
     with np.errstate(all="ignore"):
@@ -265,7 +265,10 @@ def outside_share(law: Law, low: Any, high: Any) -> Any:
             truncated.not_above - truncated.below, truncated.not_below - truncated.above
         )
         outside = ((ends.below - truncated.below) + (ends.above - truncated.above)) / kept
-        extreme = min(parent.sf(lower), parent.cdf(upper)) < _LEAST_KEPT or not kept > 0
+        extreme = (
+            min(truncated.parent.sf(lower), truncated.parent.cdf(upper)) < _LEAST_KEPT
+            or not kept > 0
+        )
     return None if extreme or np.isnan(outside).any() else np.minimum(outside, 1.0)
 
 

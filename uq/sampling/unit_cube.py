@@ -173,6 +173,11 @@ def _scrambled(name: str, seed: int, replicate: int, d: int) -> Any:
     return getattr(qmc, name)(d, rng=generator(seed, replicate))
 
 
+def _unit_cube(d: int) -> dict[str, Any]:
+    """Return the description that SALib requires of inputs between 0 and 1."""
+    return {"num_vars": d, "names": [str(i) for i in range(d)], "bounds": [[0.0, 1.0]] * d}
+
+
 HARMONICS = 4
 """Harmonics of the frequency of an input that count as its effect."""
 
@@ -195,9 +200,8 @@ def fast_curves(seed: int, replicates: int, d: int, samples: int) -> Points:
     """
     from SALib.sample import fast_sampler
 
-    problem = {"num_vars": d, "names": [str(i) for i in range(d)], "bounds": [[0.0, 1.0]] * d}
     curves = [
-        fast_sampler.sample(problem, samples, HARMONICS, generator(seed, replicate))
+        fast_sampler.sample(_unit_cube(d), samples, HARMONICS, generator(seed, replicate))
         for replicate in range(replicates)
     ]
     return inside(np.reshape(curves, (replicates, d, samples, d)).transpose(2, 0, 1, 3).copy())
@@ -221,8 +225,8 @@ def random_balance(seed: int, replicates: int, d: int, samples: int) -> Points:
         rng = generator(seed, replicate)
         turn = 2 * np.pi * (np.arange(samples) + rng.random()) / samples
         for column in range(d):
-            x = 0.5 + np.arcsin(np.sin(rng.permutation(turn))) / np.pi
-            points[:, replicate, column] = x
+            wave = np.sin(rng.permutation(turn))
+            points[:, replicate, column] = 0.5 + np.arcsin(wave) / np.pi
     return inside(points)
 
 
@@ -279,10 +283,9 @@ def morris_trajectories(
 def _bundle(seed: int, replicate: int, bundle: int, d: int, size: int, pool: int) -> Points:
     from SALib.sample.morris import sample
 
-    problem = {"num_vars": d, "names": [str(i) for i in range(d)], "bounds": [[0.0, 1.0]] * d}
     rng = generator(seed, replicate, bundle)
     best = size if pool > 1 else None
-    levels = sample(problem, pool * size, LEVELS, optimal_trajectories=best, seed=rng)
+    levels = sample(_unit_cube(d), pool * size, LEVELS, optimal_trajectories=best, seed=rng)
     # Exact thirds again: SALib's arithmetic leaves their last bits to chance.
     steps = np.rint(levels * (LEVELS - 1)).reshape(size, d + 1, d)
     points: Points = TAIL + (1 - 2 * TAIL) * steps / (LEVELS - 1)

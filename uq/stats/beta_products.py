@@ -1,4 +1,4 @@
-"""The share of rows that has ended by each time, as a product of beta variables."""
+"""Confidence distribution of the share of failed rows, by products of beta variables."""
 
 from typing import NamedTuple
 

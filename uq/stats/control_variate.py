@@ -4,8 +4,6 @@ The mean of n rows is corrected by their error in a cheap quantity, whose mean i
 more rows: m - b (c_n - c_M).
 """
 
-from typing import NamedTuple
-
 import numpy as np
 import scipy  # which imports scipy.stats when it is first used
 
@@ -20,22 +18,9 @@ FEWEST = 5
 _AGAINST = 5  # hits that count against a control
 
 
-class Controlled(NamedTuple):
-    """An estimate by control variates.
-
-    Attributes
-    ----------
-    estimate : Estimate
-    reduction : float
-        Variance of the plain estimate over that of this one: how many times more rows would be as
-        good.
-    """
-
-    estimate: Estimate
-    reduction: float
-
-
-def controlled_mean(values: Floats, kept: Mask, *, controls: Floats, many: Floats) -> Controlled:
+def controlled_mean(
+    values: Floats, kept: Mask, *, controls: Floats, many: Floats
+) -> tuple[Estimate, float]:
     """Estimate the mean of the values of rows that have one.
 
     Parameters
@@ -51,7 +36,10 @@ def controlled_mean(values: Floats, kept: Mask, *, controls: Floats, many: Float
 
     Returns
     -------
-    Controlled
+    estimate : Estimate
+    reduction : float
+        Variance of the plain estimate over that of this one: how many times more rows would be as
+        good.
     """
     plain = values[kept].mean()
     n, k = len(values), controls.shape[1]
@@ -60,13 +48,15 @@ def controlled_mean(values: Floats, kept: Mask, *, controls: Floats, many: Float
     slope, reduction = _regressed(errors, controls, np.ones(n), len(many))
     value = float(plain - slope @ (controls.mean(axis=0) - many.mean(axis=0)))
     if n < k + 3 or intervals.is_constant(values[kept]):
-        return Controlled(Estimate(float(plain)), 1.0)
+        return Estimate(float(plain)), 1.0
     wide = student(intervals.upper_probability(), n - 1 - k)
     half = wide * errors.std(ddof=1 + k) / np.sqrt(n * reduction)
-    return Controlled(Estimate(value, value - float(half), value + float(half)), reduction)
+    return Estimate(value, value - float(half), value + float(half)), reduction
 
 
-def controlled_share(hits: Mask, kept: Mask, *, control: Floats, many: Floats) -> Controlled:
+def controlled_share(
+    hits: Mask, kept: Mask, *, control: Floats, many: Floats
+) -> tuple[Estimate, float]:
     """Estimate the share of hits among the rows kept, from hits of a cheap quantity.
 
     Parameters
@@ -79,11 +69,13 @@ def controlled_share(hits: Mask, kept: Mask, *, control: Floats, many: Floats) -
 
     Returns
     -------
-    Controlled
+    estimate : Estimate
         A hit of the control is a value beyond a limit that as many rows exceed as there are hits.
         The interval is that of a share (`uq.stats.intervals.binomial_interval`) for the equivalent
         number of independent plain rows. With fewer than `FEWEST` hits, or misses, the value of the
         control is unknown, and the estimate is that of the plain rows.
+    reduction : float
+        As in `controlled_mean`.
 
     Notes
     -----
@@ -105,7 +97,7 @@ def controlled_share(hits: Mask, kept: Mask, *, control: Floats, many: Floats) -
     oriented = _orientation(hits[kept & has_control], control[kept & has_control])
     beyond = _limit(oriented * control[has_control], count)
     if rarer < FEWEST or beyond is None:
-        return Controlled(Estimate(plain, *intervals.share_interval(hits[kept])), 1.0)
+        return Estimate(plain, *intervals.share_interval(hits[kept])), 1.0
     exceeding, many_exceeding = (
         1.0 * (oriented * quantity > beyond) for quantity in (control, many)
     )
@@ -117,7 +109,7 @@ def controlled_share(hits: Mask, kept: Mask, *, control: Floats, many: Floats) -
     value = float(np.clip(plain - slope[0] * (exceeding.mean() - many_exceeding.mean()), 0.0, 1.0))
     reduction = 1 + (reduction - 1) * rarer / (rarer + _AGAINST)
     ends = intervals.binomial_interval(value, reduction * kept.sum())
-    return Controlled(Estimate(value, *ends), reduction)
+    return Estimate(value, *ends), reduction
 
 
 def _orientation(hits: Mask, control: Floats) -> float:

@@ -10,7 +10,6 @@ from functools import lru_cache
 import numpy as np
 from scipy import special
 
-from uq.contract import Floats
 from uq.stats.intervals import CONFIDENCE, upper_probability
 from uq.stats.quantile_functions import student
 from uq.stats.roots import root
@@ -94,14 +93,9 @@ def _wrong(wide: float, freedom: int, checks: int) -> float:
     misses = np.cumsum(missed_in_step)
     total, goes_on = np.zeros_like(v), np.ones_like(v)
     for check in range(checks):
-        here, missed = (_later(values, check) for values in (below, misses))
+        # The limit of a later check, for each limit at the first.
+        limit = np.minimum(np.arange(len(v)) + check * _STEPS, len(v) - 1)
         ends_anyway = check == checks - 1  # however wide the interval is
-        total += goes_on * (misses[-1] if ends_anyway else missed)
-        goes_on *= 1 - here
+        total += goes_on * (misses[-1] if ends_anyway else misses[limit])
+        goes_on *= 1 - below[limit]
     return float(total.max())
-
-
-def _later(values: Floats, check: int) -> Floats:
-    """Return the values at the limits of a later check, for each limit at the first."""
-    place = np.minimum(np.arange(len(values)) + check * _STEPS, len(values) - 1)
-    return np.asarray(values[place])

@@ -102,7 +102,8 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
             weights = smooth
         else:
             with np.errstate(invalid="ignore"):  # samples without weight
-                weights = raw * _of_rows(smooth / of_samples, part)
+                factors = np.nan_to_num(smooth / of_samples)
+            weights = raw * factors[np.unique(np.asarray(part), return_inverse=True)[1]]
     effective = effective_rows(per_sample(weights, part))
     return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
 
@@ -113,7 +114,7 @@ def no_weights(rows: int, why: str) -> Smoothed:
 
 
 def carries_little(most: float, rows: int) -> bool:
-    """Whether no row of so many can carry more than a hundredth of what all carry."""
+    """Whether no row can carry more than a hundredth of the weight of all rows."""
     return rows_to_carry_little(most) <= rows
 
 
@@ -138,7 +139,9 @@ def worth_in_words(weights: Smoothed) -> str:
 
 
 def tail_shape(numbers: Floats) -> float:
-    """Return the shape of the law of the largest of some numbers [1]_, not negative.
+    """Return the shape of the generalised Pareto law of the largest numbers [1]_.
+
+    The numbers are not negative.
 
     Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
     where all others are equal, or the largest are a few values that many rows have, as under
@@ -221,12 +224,6 @@ def per_sample(numbers: Floats, part: Replicates) -> Floats:
         return numbers
     _, place = np.unique(np.asarray(part), return_inverse=True)
     return np.bincount(place, weights=numbers).astype(float)
-
-
-def _of_rows(of_samples: Floats, part: Replicates) -> Floats:
-    """Return for each row what its sample has; nothing where that is not a number."""
-    _, place = np.unique(np.asarray(part), return_inverse=True)
-    return np.nan_to_num(of_samples)[place]
 
 
 def _are_few_values(ascending: Floats, count: int) -> bool:

@@ -163,7 +163,7 @@ def outlier_shift(value: float, estimates: Floats, more: int = 2) -> float:
 def interval_of_mean(
     value: float, values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
 ) -> Ends:
-    """Return the interval of an estimate that is off by as much as the mean of some values.
+    """Return the interval of an estimate whose error is the error of a mean.
 
     Parameters
     ----------
@@ -309,8 +309,8 @@ def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) ->
     return sums[counts > 0] / counts[counts > 0]
 
 
-def replicates_of_some(replicate: Replicates, rows: Mask) -> Replicates:
-    """Return the replicate of each of some rows."""
+def replicates_of_some(replicate: Replicates, rows: NDArray[Any]) -> Replicates:
+    """Return the replicate of each row of a subset."""
     return None if replicate is None else replicate[rows]
 
 

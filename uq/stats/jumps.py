@@ -60,7 +60,7 @@ class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
         self.inputs = np.empty((0, 0))
 
     def __getitem__(self, rows: Any) -> Any:
-        """Return the replicates of some rows; the same, with its neighbours, of all."""
+        """Return the replicates of a subset; of all rows the array itself, with its neighbours."""
         if isinstance(rows, np.ndarray) and rows.dtype == bool and rows.all():
             return self
         chosen = super().__getitem__(rows)
@@ -70,7 +70,7 @@ class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
 
     @cached_property
     def neighbours(self) -> "Neighbours":
-        """The order of the rows along each input, and what is smooth in them."""
+        """The order of the rows along each input, and the polynomials of smooth functions."""
         return Neighbours(np.asarray(self), self.inputs)
 
 

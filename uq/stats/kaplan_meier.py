@@ -1,4 +1,4 @@
-"""The share that outlives each time, of lives some of which are censored or never end."""
+"""Kaplan-Meier estimate of the survival of lives, some censored and some infinite."""
 
 from typing import NamedTuple
 

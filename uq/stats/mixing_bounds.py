@@ -1,5 +1,7 @@
 """Bounds on how a probability is distributed over worlds, from counts, whatever that law."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy import special
 
@@ -13,8 +15,16 @@ _BELOW, _ABOVE = 0.15, 0.04
 _MOST_COUNTS = 200
 
 
-class MixingBounds:
-    """Confidence bounds on the share of worlds in which a unit's probability is larger.
+def mixing_bounds(
+    probability: Floats,
+    mean: Floats,
+    size: Floats,
+    weights: Floats,
+    worth: Floats,
+    part: Replicates,
+    is_counted: bool,
+) -> Callable[[float], tuple[float, float]]:
+    """Return confidence bounds on the share of worlds in which a unit's probability is larger.
 
     Parameters
     ----------
@@ -30,6 +40,11 @@ class MixingBounds:
     part : ndarray of int, shape (samples,), or None
     is_counted : bool
         Whether each unit has ended or not, so that counts are binomial; otherwise about so.
+
+    Returns
+    -------
+    callable
+        Probability -> lower and upper bound of the share of worlds whose probability is larger.
 
     Notes
     -----
@@ -48,47 +63,34 @@ class MixingBounds:
     .. [1] N. Ignatiadis, S. Wager, "Confidence intervals for nonparametric empirical Bayes
        analysis", J. Am. Stat. Assoc. 117, 1149-1166 (2022), which uses all F at once.
     """
+    count = int(np.clip(round(float(np.median(size))), 1, _MOST_COUNTS))
+    threshold = (np.arange(count) + 0.5) / count
+    sizes, places = np.unique(size, return_inverse=True)
+    often = np.bincount(places.ravel(), np.outer(worth, weights).ravel())
+    shares = (often / often.sum(), sizes)
+    few = _at_most(threshold, probability, *shares, 0.0 if is_counted else -1.0, is_counted)
+    many = _at_most(threshold, probability, *shares, 0.0, is_counted)
+    ends = np.array([_ends((mean <= c) @ weights, worth, part) for c in threshold])
+    low, high = np.zeros(len(probability)), np.ones(len(probability))
+    for i in range(len(probability)):
+        below = int(np.searchsorted(many[i], _BELOW, side="right")) - 1
+        above = int(np.searchsorted(few[i], 1 - _ABOVE))
+        if below >= 0:
+            low[i] = max(0.0, (ends[below, 0] - many[i, below]) / (1 - many[i, below]))
+        if above < count:
+            high[i] = min(1.0, ends[above, 1] / few[i, above])
+    most = np.append(1.0, 1 - np.minimum.accumulate(low[::-1])[::-1])
+    least = np.append(1 - np.maximum.accumulate(high), 0.0)
 
-    def __init__(
-        self,
-        probability: Floats,
-        mean: Floats,
-        size: Floats,
-        weights: Floats,
-        worth: Floats,
-        part: Replicates,
-        is_counted: bool,
-    ):
-        self._probability = probability
-        count = int(np.clip(round(float(np.median(size))), 1, _MOST_COUNTS))
-        threshold = (np.arange(count) + 0.5) / count
-        sizes, places = np.unique(size, return_inverse=True)
-        often = np.bincount(places.ravel(), np.outer(worth, weights).ravel())
-        shares = (often / often.sum(), sizes)
-        few = _at_most(threshold, probability, *shares, 0.0 if is_counted else -1.0, is_counted)
-        many = _at_most(threshold, probability, *shares, 0.0, is_counted)
-        ends = np.array([_ends((mean <= c) @ weights, worth, part) for c in threshold])
-        low, high = np.zeros(len(probability)), np.ones(len(probability))
-        for i in range(len(probability)):
-            below = int(np.searchsorted(many[i], _BELOW, side="right")) - 1
-            above = int(np.searchsorted(few[i], 1 - _ABOVE))
-            if below >= 0:
-                low[i] = max(0.0, (ends[below, 0] - many[i, below]) / (1 - many[i, below]))
-            if above < count:
-                high[i] = min(1.0, ends[above, 1] / few[i, above])
-        self._most = 1 - np.minimum.accumulate(low[::-1])[::-1]
-        self._least = 1 - np.maximum.accumulate(high)
+    def exceeding(level: float) -> tuple[float, float]:
+        place = int(np.searchsorted(probability, level, side="right"))
+        return float(least[place]), float(most[place])
 
-    def exceeding(self, probability: float) -> tuple[float, float]:
-        """Return the bounds of the share of worlds whose probability is larger."""
-        place = int(np.searchsorted(self._probability, probability, side="right"))
-        most = 1.0 if place == 0 else float(self._most[place - 1])
-        least = 0.0 if place == len(self._least) else float(self._least[place])
-        return least, most
+    return exceeding
 
 
 def _ends(share: Floats, worth: Floats, part: Replicates) -> tuple[float, float]:
-    """Return the interval of a share of worlds; all that is possible where there is none."""
+    """Return the interval of a share of worlds, from 0 to 1 where none can be estimated."""
     if np.ptp(worth) > 0 or not np.isin(share, (0.0, 1.0)).all():
         low, high = weighted_share(share, worth, part).numbers[1:]
     else:

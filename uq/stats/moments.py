@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import (
@@ -11,7 +12,6 @@ from uq.stats.intervals import (
     ONE_ROW,
     UNKNOWN,
     Ends,
-    Floats,
     Replicates,
     beyond_outliers,
     by_replicate,
@@ -80,17 +80,19 @@ def moments(
     Moments
     """
     tail = heavier_tail(values)
-    no_mean = "" if tail is None else _why_no_mean(tail)
-    no_sd = "" if tail is None or not tail.no_variance else _no_variance(tail)
+    has_mean, has_sd = tail is None or not tail.no_mean, tail is None or not tail.no_variance
+    no_mean = no_sd = "" if tail is None or has_sd else _no_variance(tail)
+    if tail is not None and not has_mean:
+        no_mean = f"heavy tail: {_seen(tail)}; with k above 1 there is no mean{_REMEDY}"
     if not no_sd and replicate is None and 1 < len(values) < ENOUGH_ROWS:
         if not is_constant(values):
             no_sd = f"needs {ENOUGH_ROWS} rows: fewer seldom show how far the tails reach"
     if len(values) == 1:
         no_mean = no_sd = ONE_ROW
-    has_mean, has_sd = tail is None or not tail.no_mean, tail is None or not tail.no_variance
+    mean = float(values[0] if np.ptp(values) == 0 else values.mean())  # else it may be rounded
     return Moments(
         Estimate(
-            _mean(values) if has_mean else np.nan,
+            mean if has_mean else np.nan,
             *(UNKNOWN if no_mean else mean_interval(values, replicate, confidence)),
             no_mean,
         ),
@@ -104,37 +106,27 @@ def moments(
     )
 
 
-def _mean(values: Floats) -> float:
-    return float(values[0] if np.ptp(values) == 0 else values.mean())  # else it may be rounded
-
-
 def _caution(tail: Tail | None) -> str | None:
     if tail is None or tail.k <= SUSPECT:
         return None
     return (
-        f"intervals of mean and sd may be too narrow: {_seen(tail)} values does not decide whether"
+        f"intervals of mean and sd may be too narrow: {_seen(tail)} does not decide whether"
         " there is a variance (k below 0.5)"
     )
 
 
 def _seen(tail: Tail) -> str:
     which = "largest" if tail.side == "upper" else "smallest"
-    return f"k = {tail.k:.2f} ({tail.low:.2f} to {tail.high:.2f}) from the {tail.values} {which}"
+    interval = f"({tail.low:.2f} to {tail.high:.2f})"
+    return f"k = {tail.k:.2f} {interval} from the {tail.values} {which} values"
 
 
 _REMEDY = "; use quantiles, or the logarithm or rank of the output"
 
 
-def _why_no_mean(tail: Tail) -> str:
-    """Return why there is no mean, or no interval of it; "" if there are both."""
-    if tail.no_mean:
-        return f"heavy tail: {_seen(tail)} values; with k above 1 there is no mean{_REMEDY}"
-    return _no_variance(tail) if tail.no_variance else ""
-
-
 def _no_variance(tail: Tail) -> str:
-    """Return one reason for both, which is printed once."""
-    no_variance = f"heavy tail: {_seen(tail)} values; with k above 0.5 there is no variance"
+    """Return why there is no standard deviation and no interval of the mean, printed once."""
+    no_variance = f"heavy tail: {_seen(tail)}; with k above 0.5 there is no variance"
     return f"{no_variance}, hence no interval of the mean{_REMEDY}"
 
 

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from uq.contract import Floats
 from uq.stats.clusters import Clusters
 from uq.stats.intervals import (
     CONFIDENCE,
     ROUNDING,
     UNKNOWN,
     Ends,
-    Floats,
     Replicates,
     by_replicate,
     scattered_share_interval,

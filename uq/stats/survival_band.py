@@ -4,9 +4,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from uq.contract import Mask
+from uq.contract import Floats, Mask
 from uq.stats.beta_products import BetaProducts
-from uq.stats.intervals import CONFIDENCE, Ends, Floats
+from uq.stats.intervals import CONFIDENCE, Ends
 
 DRAWS = 4000
 """Curves drawn; the coverage is then set to 0.3 %."""

@@ -1,7 +1,5 @@
 """The uncertainty exponent of the boundary between basins: how intermingled they are."""
 
-from typing import NamedTuple
-
 import numpy as np
 import scipy  # which imports scipy.spatial when it is first used
 from numpy.typing import NDArray
@@ -24,31 +22,6 @@ FEWEST_ROWS = 20
 
 _STEEPEST = 8.0
 _ENOUGH = 1e-4
-
-
-class _Pairs(NamedTuple):
-    """Pairs of close rows.
-
-    Attributes
-    ----------
-    rows : int
-        All rows, compared or not.
-    first, second : ndarray of int, shape (p,)
-        The rows of each pair.
-    weight : ndarray, shape (p,)
-        How many of the two are as far from all edges as the farthest pair is wide.
-    differing : ndarray, shape (p,)
-        The weight of a pair in different basins, else 0.
-    distance : ndarray, shape (p,)
-        Logarithm of the distance over `FARTHEST`.
-    """
-
-    rows: int
-    first: NDArray[np.intp]
-    second: NDArray[np.intp]
-    weight: Floats
-    differing: Floats
-    distance: Floats
 
 
 def uncertainty_exponent(
@@ -93,29 +66,62 @@ def uncertainty_exponent(
     .. [2] W. Hoeffding, "A class of statistics with asymptotically normal distribution", Ann. Math.
        Stat. 19, 293-325 (1948).
     """
-    pairs = _close_pairs(points, basin, kind)
-    apart = pairs.differing > 0
-    rows = len(np.union1d(pairs.first[apart], pairs.second[apart]))
-    if rows < FEWEST_ROWS:
+    rows, pairs, weight, differing, distance = _close_pairs(points, basin, kind)
+    near = len(np.unique(pairs[:, differing > 0]))
+    if near < FEWEST_ROWS:
         return Estimate(
-            reason=f"only {counted(rows, 'row has', 'rows have')} a close neighbour in another"
+            reason=f"only {counted(near, 'row has', 'rows have')} a close neighbour in another"
             f" basin; {FEWEST_ROWS} are needed"
         )
-    goal = float(np.average(pairs.distance, weights=pairs.differing))
+    goal = float(np.average(distance, weights=differing))
+
+    def excess(alpha: float) -> float:  # of the mean log r of all pairs, weighted by r^alpha
+        return float(np.average(distance, weights=weight * np.exp(alpha * distance))) - goal
+
+    def score(alpha: float) -> tuple[float, float]:
+        """Return the score over its standard deviation, and how many rows carry it."""
+        expected = weight * np.exp(alpha * distance)
+        expected *= differing.sum() / expected.sum()
+        centre = np.average(distance, weights=expected)
+        terms = (differing - expected) * (distance - centre)
+        pulls = np.bincount(pairs[0], terms, rows)
+        pulls += np.bincount(pairs[1], terms, rows)
+        squares = pulls**2
+        # Each pair is in the pulls of two rows; the mean pull is that of the score itself.
+        shared = squares.sum() - (terms**2).sum() - squares.size * pulls.mean() ** 2
+        variance = max(shared, (terms**2).sum())
+        effective = squares.sum() ** 2 / (squares**2).sum()
+        return float(terms.sum() / np.sqrt(variance)), float(effective)
+
     try:
-        value = root(lambda alpha: _mean(pairs, alpha) - goal, (-_STEEPEST, _STEEPEST), _ENOUGH**2)
-        limit = student(upper_probability(), _score(pairs, value)[1] - 1)
+        value = root(excess, (-_STEEPEST, _STEEPEST), _ENOUGH**2)
+        limit = student(upper_probability(), score(value)[1] - 1)
         below, above = (value - _STEEPEST, value), (value, value + _STEEPEST)
-        low = root(lambda alpha: _score(pairs, alpha)[0] - limit, below, _ENOUGH)
-        high = root(lambda alpha: _score(pairs, alpha)[0] + limit, above, _ENOUGH)
+        low = root(lambda alpha: score(alpha)[0] - limit, below, _ENOUGH)
+        high = root(lambda alpha: score(alpha)[0] + limit, above, _ENOUGH)
     except ValueError:
-        return Estimate(reason=f"{rows} rows with a close neighbour in another basin are too few")
+        return Estimate(reason=f"{near} rows with a close neighbour in another basin are too few")
     return Estimate(value, low, high)
 
 
 def _close_pairs(
     points: Floats, basin: NDArray[np.integer], kind: NDArray[np.integer] | None
-) -> _Pairs:
+) -> tuple[int, NDArray[np.intp], Floats, Floats, Floats]:
+    """Find the pairs of close rows.
+
+    Returns
+    -------
+    rows : int
+        Number of rows compared.
+    pairs : ndarray of int, shape (2, p)
+        The rows of each pair.
+    weight : ndarray, shape (p,)
+        How many of the two are as far from all edges as the farthest pair is wide.
+    differing : ndarray, shape (p,)
+        The weight of a pair in different basins, else 0.
+    distance : ndarray, shape (p,)
+        Logarithm of the distance over `FARTHEST`.
+    """
     rows = int(np.sqrt(2 * MOST_PAIRS / (2 * FARTHEST) ** points.shape[1]))
     points, basin = points[:rows], basin[:rows]
     inside = np.asarray(np.abs(points - 0.5).max(axis=1) < 0.5 - FARTHEST)
@@ -125,29 +131,6 @@ def _close_pairs(
     distance = np.abs(np.subtract(*points[pairs.T])).max(axis=1)
     weight = inside[pairs].sum(axis=1).astype(float)
     kept = np.flatnonzero((weight > 0) & (distance > 0))  # imported points may coincide
-    first, second = pairs[kept].T
-    weight = weight[kept]
-    distance = np.log(distance[kept] / FARTHEST)
-    differing = weight * (basin[first] != basin[second])
-    return _Pairs(len(points), first, second, weight, differing, distance)
-
-
-def _mean(pairs: _Pairs, alpha: float) -> float:
-    """Return the mean log r of all pairs, weighted by r^alpha."""
-    return float(np.average(pairs.distance, weights=pairs.weight * np.exp(alpha * pairs.distance)))
-
-
-def _score(pairs: _Pairs, alpha: float) -> tuple[float, float]:
-    """Return the score of an exponent over its standard deviation, and how many rows carry it."""
-    expected = pairs.weight * np.exp(alpha * pairs.distance)
-    expected *= pairs.differing.sum() / expected.sum()
-    centre = np.average(pairs.distance, weights=expected)
-    terms = (pairs.differing - expected) * (pairs.distance - centre)
-    pulls = np.bincount(pairs.first, terms, pairs.rows)
-    pulls += np.bincount(pairs.second, terms, pairs.rows)
-    squares = pulls**2
-    # Each pair is in the pulls of two rows; the mean pull is that of the score itself.
-    shared = squares.sum() - (terms**2).sum() - squares.size * pulls.mean() ** 2
-    variance = max(shared, (terms**2).sum())
-    effective = squares.sum() ** 2 / (squares**2).sum()
-    return float(terms.sum() / np.sqrt(variance)), float(effective)
+    pairs, weight = pairs[kept].T, weight[kept]
+    differing = weight * (basin[pairs[0]] != basin[pairs[1]])
+    return len(points), pairs, weight, differing, np.log(distance[kept] / FARTHEST)

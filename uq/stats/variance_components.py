@@ -53,31 +53,6 @@ class NestedShares(NamedTuple):
     left_out: int
 
 
-class _Sums(NamedTuple):
-    """Sums over samples, or over all samples but those of one group: shapes (), or (groups,)."""
-
-    weights: Floats
-    squares: Floats
-    mean: Floats
-    square: Floats
-    noise: Floats
-    middle: Floats
-    inner: Floats
-    floor: Floats
-    error: Floats
-    analytic_outer: Floats
-    analytic_middle: Floats
-    analytic_inner: Floats
-
-
-class _Share(NamedTuple):
-    """A share, and what its transformed interval adds to the share and to its complement."""
-
-    value: Floats
-    added: Floats
-    beside: Floats
-
-
 def nested_shares(
     values: Floats,
     errors: Floats | None = None,
@@ -128,14 +103,11 @@ def nested_shares(
     """
     analytic = np.zeros((3, *values.shape)) if analytic is None else analytic
     worth = np.ones(len(values)) if weights is None else weights
-    columns, whole = _columns(values, errors, analytic, worth)
-    independent = np.flatnonzero(whole)
+    terms, whole = _terms(values, errors, analytic, worth)
+    independent = np.arange(np.count_nonzero(whole))
     if replicate is not None:
         _, independent = np.unique(replicate[whole], return_inverse=True)
-    else:
-        independent = np.arange(len(independent))
-    total = _Sums(*columns.sum(axis=1))
-    shares, variance = _shares(total)
+    shares, added, beside, variance = _shares(terms.sum(axis=1))
     left_out = int((~whole & (worth > 0)).sum())
     finite = values[whole][np.isfinite(values[whole])]
     least = ROUNDING * float(np.nan_to_num(np.sqrt(np.abs(variance))))
@@ -149,14 +121,13 @@ def nested_shares(
     if groups < 2:
         reason = reason or "a single replicate does not show its scatter"
     if not scatters:
-        estimates = [Estimate(*3 * (float(share.value),)) for share in shares]
+        estimates = [Estimate(share, share, share) for share in shares.tolist()]
     elif reason:
-        estimates = [Estimate(float(share.value), reason=reason) for share in shares]
+        estimates = [Estimate(share, reason=reason) for share in shares.tolist()]
     else:
-        group_sums = np.stack([np.bincount(independent, column) for column in columns])
-        without, _ = _shares(_Sums(*(columns.sum(axis=1)[:, None] - group_sums)))
-        pairs = zip(shares, without, strict=True)
-        estimates = [_estimate(share, other.value, groups) for share, other in pairs]
+        of_groups = np.stack([np.bincount(independent, term) for term in terms])
+        without, *_ = _shares(terms.sum(axis=1)[:, None] - of_groups)
+        estimates = list(map(_estimate, shares.tolist(), added, beside, without))
     for place in (1, 2):
         if values.shape[place] == 1 and not analytic[place].any():
             estimates[place] = Estimate(reason="needs two of them")
@@ -166,10 +137,19 @@ def nested_shares(
     return NestedShares(outer, middle, inner, error, float(variance), left_out)
 
 
-def _columns(
+def _terms(
     values: Floats, errors: Floats | None, analytic: Floats, worth: Floats
 ) -> tuple[Floats, Mask]:
-    """Return the terms of `_Sums`, shape (12, n), and the mask of the samples that have them."""
+    """Return the terms of the samples that `_shares` sums, and the mask of samples with terms.
+
+    Returns
+    -------
+    terms : ndarray, shape (12, n)
+        Weighted: 1, the weight, mean and squared mean of a sample, its noise, variance of units and
+        of repeats, noise of the latter, squared error, and analytic variances of samples, units and
+        repeats.
+    whole : ndarray of bool, shape (samples,)
+    """
     counts = np.isfinite(values).sum(axis=2)
     units = (counts > 0).sum(axis=1)
     repeated = (counts > 1).sum(axis=1)
@@ -221,33 +201,39 @@ def _mean_and_variance(
     return mean, np.where(variance > least, variance, 0.0)
 
 
-def _shares(sums: _Sums) -> tuple[tuple[_Share, ...], Floats]:
-    """Return the shares of samples, units, repeats and errors, and the variance."""
-    n = sums.weights
+def _shares(sums: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return the shares of samples, units, repeats and errors, and the variance.
+
+    Parameters
+    ----------
+    sums : ndarray, shape (12,) or (12, groups)
+        Of the terms of all samples, or of all but those of one group.
+
+    Returns
+    -------
+    shares, added, beside : ndarray, shape (4,) or (4, groups)
+        Each share, and what its transformed interval adds to it and to its complement.
+    variance : ndarray, shape () or (groups,)
+    """
+    n, squares, mean, square, noise, middle, inner, floor, error, *analytic = sums
     with np.errstate(divide="ignore", invalid="ignore"):
-        noise, floor, error = (total / n for total in (sums.noise, sums.floor, sums.error))
-        free = n - sums.squares / n
-        outer = (sums.square - sums.mean**2 / n) / free - noise + sums.analytic_outer / n
-        middle = (sums.middle + sums.analytic_middle) / n
-        inner = (sums.inner + sums.analytic_inner) / n
+        noise, floor, error = noise / n, floor / n, error / n
+        outer = (square - mean**2 / n) / (n - squares / n) - noise + analytic[0] / n
+        middle, inner = (middle + analytic[1]) / n, (inner + analytic[2]) / n
         variance = outer + middle + inner
         noise, floor, nothing = noise / variance, floor / variance, 0.0 * variance
-        shares = (
-            _Share(outer / variance, noise, nothing),
-            _Share(middle / variance, floor, noise),
-            _Share(inner / variance, nothing, floor),
-            _Share(error / variance, nothing, nothing),
-        )
-    return shares, variance
+        shares = np.array([outer, middle, inner, error]) / variance
+    added = np.array([noise, floor, nothing, nothing])
+    return shares, added, np.array([nothing, noise, floor, nothing]), variance
 
 
-def _estimate(share: _Share, without: Floats, groups: int) -> Estimate:
+def _estimate(value: float, added: float, beside: float, without: Floats) -> Estimate:
     """Return a share with its interval, from its values without each group of samples."""
-    value = float(share.value)
+    groups = len(without)
     pulls = (groups - 1) * (value - without)
     pulls = pulls - pulls.mean()
     squares = pulls @ pulls
-    up, down = value + float(share.added), 1 - value + float(share.beside)
+    up, down = value + added, 1 - value + beside
     if not squares > 0:
         return Estimate(value, reason=NO_SCATTER)
     if not (up > 0 and down > 0):
@@ -257,5 +243,5 @@ def _estimate(share: _Share, without: Floats, groups: int) -> Estimate:
     half = student(upper_probability(CONFIDENCE), groups - 1) * error * (1 / up + 1 / down)
     middle = np.log(up / down)
     odds = np.exp([middle - half, middle + half])
-    low, high = (odds * (1 + share.beside) - share.added) / (1 + odds)
+    low, high = (odds * (1 + beside) - added) / (1 + odds)
     return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))

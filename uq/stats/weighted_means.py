@@ -7,7 +7,6 @@ hits.
 
 from collections.abc import Callable
 from math import inf
-from typing import NamedTuple
 
 import numpy as np
 from scipy import special
@@ -47,18 +46,8 @@ FEW = 20
 """With fewer effective rows on either side, an interval is no narrower than that of hits."""
 
 
-class Hits(NamedTuple):
-    """Rows of the binomial interval that limits the width of another from below, and its weight."""
-
-    rows: float
-    """The effective number of all rows, or fewer where those that carry most are heavier than they:
-    a row that is missing may be as heavy. Where no row carries anything, as heavy as the heaviest.
-    """
-
-    extent: float
-    """1 where no more than 20 effective rows carry the mean, 0 from 40 on, between them linear, so
-    that an interval does not jump where the weights change a little.
-    """
+Hits = tuple[float, float]
+"""Rows of a binomial interval that limits the width of another from below, and its weight."""
 
 
 def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> list[Hits]:
@@ -74,53 +63,51 @@ def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> li
 
     Returns
     -------
-    list of Hits
-        Of the mean, and of its complement; only those that count.
+    list of (rows, extent)
+        Of the mean, and of its complement; only those that count. The rows are the effective number
+        of all rows, or fewer where those that carry most are heavier than they: a row that is
+        missing may be as heavy. Where no row carries anything, as heavy as the heaviest. The
+        extent is 1 where no more than 20 effective rows carry the mean, 0 from 40 on, between
+        them linear, so that an interval does not jump where the weights change a little.
     """
     worth = np.ones(len(numbers)) if weights is None else weights
     of_samples = per_sample(worth, part)
-    both = (_hits(per_sample(worth * side, part), of_samples) for side in (numbers, 1 - numbers))
-    return [side_hits for side_hits in both if side_hits.extent > 0]
-
-
-def _hits(carried: Floats, of_samples: Floats) -> Hits:
-    extent = float(np.clip(2 - effective_rows(carried) / FEW, 0.0, 1.0))
-    most = carried.max()
-    # A sample that carries nearly as much as another counts nearly as it does.
-    heaviest = (of_samples * carried).max() / most if most > 0 else of_samples.max()
-    with np.errstate(over="ignore"):  # of a row that hardly has a weight
-        rows = min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
-    return Hits(rows, extent)
+    hits = []
+    for side in (numbers, 1 - numbers):
+        carried = per_sample(worth * side, part)
+        extent = float(np.clip(2 - effective_rows(carried) / FEW, 0.0, 1.0))
+        if extent > 0:
+            most = carried.max()
+            # A sample that carries nearly as much as another counts nearly as it does.
+            heaviest = (of_samples * carried).max() / most if most > 0 else of_samples.max()
+            with np.errstate(over="ignore"):  # of a row that hardly has a weight
+                rows = min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
+            hits.append((rows, extent))
+    return hits
 
 
 def fewest_rows(hits: list[Hits]) -> float:
     """Return the least number of rows of the hits; infinite if there are none."""
-    return min((side_hits.rows for side_hits in hits), default=inf)
+    return min((rows for rows, _ in hits), default=inf)
 
 
 def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> Ends:
-    """Return an interval that is no narrower than those of hits, as far as these count.
+    """Return an interval at least as wide as the intervals of hits, by their extent.
 
     Parameters
     ----------
     ends : tuple
         Lower and upper end.
-    hits : list of Hits
+    hits : list of (rows, extent)
     of_hits : function
         Rows -> the interval of a share among so many.
     """
-    intervals = [(of_hits(side_hits.rows), side_hits.extent) for side_hits in hits]
-    low, high = ends
-    return (
-        min(
-            (low + extent * min(0.0, interval[0] - low) for interval, extent in intervals),
-            default=low,
-        ),
-        max(
-            (high + extent * max(0.0, interval[1] - high) for interval, extent in intervals),
-            default=high,
-        ),
-    )
+    lows, highs = [ends[0]], [ends[1]]
+    for rows, extent in hits:
+        low, high = of_hits(rows)
+        lows.append(ends[0] + extent * min(0.0, low - ends[0]))
+        highs.append(ends[1] + extent * max(0.0, high - ends[1]))
+    return min(lows), max(highs)
 
 
 EXACT = "exact: rows differ only in what is integrated"
@@ -165,7 +152,7 @@ def weighted_share(
     weights : ndarray, shape (n,), optional
     part : ndarray of int, shape (n,), optional
         The independent part of each row.
-    hits : list of Hits, optional
+    hits : list of (rows, extent), optional
         The intervals of hits that it must allow for; by default `hits_behind`.
     confidence : float, optional
 

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from uq.assess.statistic import Statistic
 from uq.assess.targets import FORMS, split_name
 from uq.render.html.bars import bar
-from uq.stats import estimate_text
+from uq.stats.estimate_text import failed_bounds_text
 
 SHARE = "share"
 """The scale of shares: from 0 to 1."""
@@ -98,7 +98,7 @@ def cell(statistic: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     estimate = statistic.estimate
     form = FORMS.get(split_name(statistic.of)[0])
     text = statistic.words(per) + (f", of the {form}" if form else "")
-    worst = estimate_text.failed_bounds_text(statistic.failed, per)
+    worst = failed_bounds_text(statistic.failed, per)
     small = (
         statistic.interval(per).replace(" to ", " to\u00a0"),  # breaks in two, not three
         f"with failed rows {worst}" if worst else "",
