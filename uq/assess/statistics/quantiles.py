@@ -42,7 +42,8 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
             estimator=quantile_of(element, p),
             by=_BY if element.is_plain else _LAWS,
         )
-        guess = sample.life_quantile(p) if element.is_lifetime else NOTHING
+        counted = element.is_lifetime and element.is_plain  # else no Kaplan-Meier curve
+        guess = sample.life_quantile(p) if counted else NOTHING
         label = f"{statistic.label}, if"
         otherwise = replace(statistic, label=label, estimate=guess, by=_BY_KAPLAN_MEIER)
         yield replace(statistic, otherwise=otherwise) if guess.assumes else statistic
