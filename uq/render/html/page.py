@@ -14,7 +14,7 @@ from uq.render.html.convergence import convergence_of
 from uq.render.html.embedded_rows import rows_inside, why_no_rows
 from uq.render.html.fleets import fleet_notes, fleet_table
 from uq.render.html.head import headline
-from uq.render.html.indices import of_output, output_of, sensitivity_of
+from uq.render.html.indices import of_output, sensitivity_of
 from uq.render.html.inputs import fixed_inputs, input_tables
 from uq.render.html.inspections import inspections_csv
 from uq.render.html.layout import laid_out
@@ -101,10 +101,7 @@ def _content(result: Result, file: str) -> dict[str, Any]:
         "status": status_table(result, summary),
         "failed": lost,
         "regimes": regime_tables(findings),
-        "rows_drawn": [
-            *(figure for figure in drawn if output_of(figure.of.name) == REGIME),
-            *by_regime,
-        ],
+        "rows_drawn": [*(figure for figure in drawn if figure.output == REGIME), *by_regime],
         "regime_indices": of_output(methods, REGIME),
         "convergence": convergence_of(findings, described),
         "levels": levels_of(findings),
