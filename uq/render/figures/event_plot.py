@@ -54,7 +54,7 @@ def event_probability(
     value, low, high = np.array([share.numbers for share in curve.shares]).T
     clause = f"rows that {event.clause}"
     (panel,) = column(axes, 2.1)
-    band = (_ended(low), _ended(high))
+    band = [np.append(end, end[-1]) for end in (low, high)]  # a number for each edge
     panel.stairs(value, edges, baseline=None, color=colour, lw=1.4, label="in parts of the input")
     words = "95 % intervals, pointwise"
     panel.fill_between(edges, *band, step="post", color=colour, alpha=0.25, lw=0, label=words)
@@ -66,8 +66,3 @@ def event_probability(
         as_label(over, event.over_unit.name, symbol=symbol_of(result.dataset[event.over]))
     )
     return finish(panel)
-
-
-def _ended(values: np.ndarray) -> np.ndarray:
-    """Return one number for each edge of the steps."""
-    return np.append(values, values[-1])

@@ -29,7 +29,7 @@ def convergence_of(findings: Findings, outcomes: list[Outcome]) -> dict[str, Any
         ``table``: the sampling error and the error of the rows themselves, or None; ``warnings``;
         ``refused``: why there are no running estimates, or ""; ``pictures``.
     """
-    nothing = {"table": None, "warnings": [], "pictures": []}
+    nothing: dict[str, Any] = {"table": None, "warnings": [], "pictures": []}
     if not outcomes:
         return nothing | {"refused": "there is no numeric output"}
     try:

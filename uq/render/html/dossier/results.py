@@ -131,7 +131,7 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     levels, fleets = levels_of(findings), fleet_table(findings)
     yield Item(
         "What is shared, own, or due to chance",
-        tables=list(filter(None, (levels and levels["table"], fleets))),
+        tables=[table for table in (levels and levels["table"], fleets) if table],
         notes=levels["notes"] + fleet_notes(findings) if levels else ["Each sample has one row."],
     )
 
