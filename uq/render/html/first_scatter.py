@@ -45,7 +45,7 @@ def first_input(inputs: dict[str, Floats], element: Element, answered: Sequence[
     """
     quantities = [quantity for quantity in answered if quantity.name == element.name]
     events = [event for quantity in quantities for event in quantity.events]
-    rankings = [ranked.ranking for ranked in (*quantities, *events)]
+    rankings = [quantity.ranking for quantity in quantities] + [event.ranking for event in events]
     leaders = [ranking.leader for ranking in rankings if ranking is not None]
     named = [name for leader in leaders if leader for name in leader.inputs if name in inputs]
     return (named or leading(inputs, element))[0]
