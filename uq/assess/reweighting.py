@@ -9,6 +9,7 @@ import numpy as np
 from uq.assess.densities import changed_laws, log_ratio, share_without_rows
 from uq.assess.row_inputs import Inputs
 from uq.assess.scaling import integrated
+from uq.errors import InputError, RunError
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.importance_weights import Smoothed, no_weights, smoothed
@@ -46,6 +47,29 @@ class Weighting:
     def all_inputs(self) -> Smoothed:
         """The weights with nothing integrated."""
         return self.integrating(())
+
+    @property
+    def quality(self) -> tuple[float, float]:
+        """The least effective number of rows of the weights used, and their largest Pareto k."""
+        used = self.used.values()
+        return (
+            min((weights.effective for weights in used), default=0.0),
+            max((weights.k for weights in used), default=0.0),
+        )
+
+    def refuse_if_unused(self) -> None:
+        """Raise the first refusal where no element has reliable weights.
+
+        Raises
+        ------
+        InputError
+            When the weights are impossible.
+        RunError
+            When they cannot be trusted.
+        """
+        if self.refused and not self.used:
+            first = next(iter(self.refused.values()))
+            raise (InputError if first.impossible else RunError)(first.refusal)
 
     def elements(self, outputs: Sequence[str]) -> Iterator[Element]:
         """Yield the elements of the outputs whose weights are reliable."""

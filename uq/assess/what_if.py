@@ -15,7 +15,7 @@ from uq.assess.summary import Summary, summarise
 from uq.assess.summary_json import summary_facts
 from uq.assess.summary_table import table_of
 from uq.contract import Parameter
-from uq.errors import InputError, RunError, nearest
+from uq.errors import InputError, nearest
 from uq.result.result import AnyResult, Result
 from uq.sampling.dependence import matrix_problem
 from uq.sampling.input_faults import InputFault
@@ -97,26 +97,34 @@ def answer(
     parts: Collection[str] = STATISTICS,
 ) -> WhatIf:
     """Return the summary that `what_if` tabulates, or the requested part of it."""
+    weighting = weighting_of(result, changes)
+    summary = summarise(result, asked, weighting=weighting, parts=parts)
+    weighting.refuse_if_unused()
+    for name, weights in weighting.refused.items():
+        summary.notes.append(f"{name}: {weights.refusal}")
+    return WhatIf(summary, *weighting.quality, weighting.all_inputs)
+
+
+def weighting_of(
+    result: Result, changes: Mapping[str, Any], old: Inputs | None = None
+) -> Weighting:
+    """Return the weights of the independent rows of a result under other laws.
+
+    Parameters
+    ----------
+    result : Result
+    changes : dict of str to object
+        As for `what_if`.
+    old : Inputs, optional
+        Inputs of these rows under the laws of the study, if already read.
+    """
     result.refuse_weights("what if")
     if why := result.why_no_statistics:
         raise InputError(f"what if: the rows of a '{result.design_name}' design {why}")
     rows = result.independent
-    old, new = inputs_of(rows), _changed(rows, changes)
+    old, new = old or inputs_of(rows), _changed(rows, changes)
     _refuse(result, old, new)
-    weighting = Weighting(rows, old, new, rows.replicates)
-    summary = summarise(result, asked, weighting=weighting, parts=parts)
-    if not weighting.used and weighting.refused:
-        first = next(iter(weighting.refused.values()))
-        raise (InputError if first.impossible else RunError)(first.refusal)
-    for name, weights in weighting.refused.items():
-        summary.notes.append(f"{name}: {weights.refusal}")
-    used = weighting.used.values()
-    return WhatIf(
-        summary,
-        min((weights.effective for weights in used), default=0.0),
-        max((weights.k for weights in used), default=0.0),
-        weighting.all_inputs,
-    )
+    return Weighting(rows, old, new, rows.replicates)
 
 
 def what_if_facts(answered: WhatIf) -> Fact:

@@ -46,7 +46,8 @@ def exact_interval(
     tail = (1 - confidence) / 2
     hits = np.asarray(share * rows, dtype=float)
     # Rounding must not leave a fraction of a hit where there was none.
-    hits = np.where(np.isclose(hits, np.round(hits), rtol=0, atol=1e-9), np.round(hits), hits)
+    whole = np.round(hits)
+    hits = np.where(np.abs(hits - whole) <= 1e-9, whole, hits)
     misses = np.maximum(rows - hits, 0.0)
     low = np.where(hits > 0, special.betaincinv(np.maximum(hits, 1e-9), misses + 1, tail), 0.0)
     high = np.where(misses > 0, special.betainccinv(hits + 1, np.maximum(misses, 1e-9), tail), 1.0)

@@ -44,8 +44,8 @@ def test_the_remark_stands_beside_the_bar_in_table_figure_and_report(capsys):
     assert ["by correlation alone" in label for label in labels] == [
         "x_{4}" in text for text in labels
     ]
-    (method,) = sensitivity_of(Findings(Result(ds)))
-    beside = {row[0].text: row[0].more for row in method.subjects[0].tables[0].rows}
+    ((_, subjects),) = sensitivity_of(Findings(Result(ds))).values()
+    beside = {row[0].text: row[0].more for row in subjects[0].tables[0].rows}
     assert beside == {"x1": "", "x2": "", "x3": "", "x4": "by correlation alone"}
     assert uq.sensitivity(ds)["by_correlation"].values.tolist() == [[False, False, False, True]]
 

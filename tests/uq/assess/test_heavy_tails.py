@@ -95,8 +95,7 @@ def test_an_output_without_a_heavy_tail_stands_as_it_is():
 
 def test_reports_say_what_the_indices_are_of():
     ds = asking(heavy(samples=128), outputs=["work"], sensitivity=["sobol"])
-    (method,) = sensitivity_of(Findings(Result(ds)))
-    (subject,) = method.subjects
+    ((_, (subject,)),) = sensitivity_of(Findings(Result(ds))).values()
     assert subject.words == "Logarithm of the meaning of work"
     assert "share of the variance of the logarithm" in uq.answer(ds).lead.ranking.index_meaning
 

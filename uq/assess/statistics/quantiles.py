@@ -34,7 +34,8 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
             estimator=sample.quantile_estimator(p),
             by=sample.by["quantile"],
         )
-        guess = sample.life_quantile(p) if element.is_lifetime else NOTHING
+        counted = element.is_lifetime and element.is_plain  # else no Kaplan-Meier curve
+        guess = sample.life_quantile(p) if counted else NOTHING
         label = f"{statistic.label}, if"
         if guess.assumes:
             by = sample.by["life_quantile"]

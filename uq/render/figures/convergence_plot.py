@@ -62,14 +62,13 @@ def convergence(
     (panel,) = column(axes, 2.1)
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
-        _curve(
-            panel,
-            estimates[estimates["output"] == element.name],
-            unit.size,
-            colour,
-            line,
-            label(result, element),
-        )
+        samples, *numbers = _numbers(estimates[estimates["output"] == element.name])
+        value, low, high = (series / unit.size for series in numbers)
+        words = label(result, element)
+        panel.plot(samples, value, color=colour, ls=line, marker=".", label=words)
+        if np.isfinite(low).any():
+            only = 0.8 if len(samples) == 1 else 0  # a band over one place has no width
+            panel.fill_between(samples, low, high, color=colour, alpha=0.3, lw=only)
     statistic = "mean" if kind == "mean" else "median"
     bands = _over_samples(panel, result)
     if bands and not np.isfinite(estimates[["low", "high"]].astype(float)).all(axis=None):
@@ -151,17 +150,6 @@ def index_convergence(
 def total_indices(running: pd.DataFrame) -> pd.DataFrame:
     """Return the lines of `uq.running_estimates` that are total indices."""
     return running[running["kind"] == ST.key].dropna(subset="value")
-
-
-def _curve(
-    axes: Axes, lines: pd.DataFrame, per: float, colour: str, style: str, words: str
-) -> None:
-    samples, *numbers = _numbers(lines)
-    value, low, high = (series / per for series in numbers)
-    axes.plot(samples, value, color=colour, ls=style, marker=".", label=words)
-    if np.isfinite(low).any():
-        only = 0.8 if len(samples) == 1 else 0  # a band over one place has no width
-        axes.fill_between(samples, low, high, color=colour, alpha=0.3, lw=only)
 
 
 def _numbers(lines: pd.DataFrame) -> list[Floats]:

@@ -226,25 +226,19 @@ def _mark_bounds(
     if element.is_lifetime:
         wanted = "below" if element.declared.success else "above"
     sides = {"above": ["lower"], "below": ["upper"], None: ["lower", "upper"]}[wanted]
-    bounds = [
-        statistic.estimate.value
-        for side in sides
-        if (statistic := described.find("tolerance", side))
-    ]
-    drawn = [bound for bound in bounds if np.isfinite(bound)]
-    for bound in drawn:
+    statistics = [described.find("tolerance", side) for side in sides]
+    bounds = [statistic.estimate.value for statistic in statistics if statistic]
+    for bound in filter(np.isfinite, bounds):
         axes.axvline(bound / unit.size, color=colour, ls=":", lw=1.2)
-    return bool(drawn)
+    return any(map(np.isfinite, bounds))
 
 
 def _mark(axes: Axes, described: Described | None, unit: ReadableUnit, colour: str) -> set[str]:
     """Mark the B-lives of an element with their intervals, and return the names of finite ones."""
     if described is None:
         return set()
-    asked = {name: described.find("b_lives", name) for name in B_LIVES}
-    lives = {
-        name: statistic.best.estimate for name, statistic in asked.items() if statistic is not None
-    }
+    statistics = {name: described.find("b_lives", name) for name in B_LIVES}
+    lives = {name: statistic.best.estimate for name, statistic in statistics.items() if statistic}
     finite = {name: estimate for name, estimate in lives.items() if np.isfinite(estimate.value)}
     if not finite:
         return set()

@@ -17,7 +17,6 @@ from uq.render.figures.index_plot import range_of_indices
 from uq.render.figures.panel import column, finish, heading, is_wide, logarithmic, roomy, title
 from uq.render.figures.style import LINES, SHADES, styled
 from uq.render.figures.words import as_label, labelled, place_in_words
-from uq.result.elements import Element
 from uq.result.result import AnyResult, Result
 from uq.text.units import unit_of
 
@@ -116,15 +115,9 @@ def index_curves(
             panel.fill_between(at, low, high, color=SHADES[i], alpha=0.25, lw=0)
         panel.set_ylim(range_of_indices(panel.get_ylim()))
         title(panel, as_label(f"{kind.words}{bands}"), place)
-    if is_wide(at):
-        logarithmic(drawn[-1])
-    else:
-        roomy(drawn[-1])
+    (logarithmic if is_wide(at) else roomy)(drawn[-1])
     drawn[-1].set_xlabel(labelled(result.dataset[along], unit.name))
-    heading(drawn[0], as_label(_subject(elements[0], form), width=48))
+    meaning = elements[0].meaning
+    described = f"{FORMS[form]} of the {meaning.removeprefix('the ')}" if form else meaning
+    heading(drawn[0], as_label(described, width=48))
     return finish(drawn[-1])
-
-
-def _subject(element: Element, form: str) -> str:
-    meaning = element.meaning.removeprefix("the ")
-    return f"{FORMS[form]} of the {meaning}" if form else element.meaning

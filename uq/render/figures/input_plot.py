@@ -66,7 +66,16 @@ def inputs(
         else:
             factor = f"{result.dataset[name].attrs['long_name']}: factor on {law.times}"
             panel.set_xlabel(as_label(factor, width=width))
-        _panel(panel, law, values, weights, per, ticks=6 // columns)
+        edges, wide = bins(values)
+        edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
+        worth = np.ones(len(values)) if weights is None else weights
+        shares = np.histogram(values, edges, weights=worth)[0] / worth.sum()
+        panel.stairs(shares, edges / per, fill=True, color=ROWS)
+        panel.stairs(_stated_shares(law, edges), edges / per, color=INK, lw=1.0)
+        panel.set_ylim(0, None)
+        roomy(panel, 6 // columns)
+        if wide:
+            logarithmic(panel)
     count = len(next(iter(distributions.values()))[1])
     rows = f"{grouped(count)}{' weighted' if weights is not None else ''} rows"
     several = len(result.independent) > count
@@ -76,20 +85,8 @@ def inputs(
     return figure_of(panels[0])
 
 
-def _panel(
-    axes: Axes, law: Law, values: Floats, weights: Floats | None, per: float, ticks: int
-) -> None:
-    edges, wide = bins(values)
-    edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
-    worth = np.ones(len(values)) if weights is None else weights
-    rows = np.histogram(values, edges, weights=worth)[0] / worth.sum()
-    # As in the histogram: bins include their lower end, the last one also its upper end.
+def _stated_shares(law: Law, edges: Floats) -> Floats:
+    """Return the probability of each bin, which includes its lower end, the last also its upper."""
     upper = cdf_within(law, np.append(np.nextafter(edges[1:-1], -np.inf), edges[-1]), EVERYWHERE)
     lower = cdf_within(law, np.nextafter(edges[:1], -np.inf), EVERYWHERE)
-    stated = np.diff(np.append(lower, upper))
-    axes.stairs(rows, edges / per, fill=True, color=ROWS)
-    axes.stairs(stated, edges / per, color=INK, lw=1.0)
-    axes.set_ylim(0, None)
-    roomy(axes, ticks)
-    if wide:
-        logarithmic(axes)
+    return np.diff(np.append(lower, upper))

@@ -11,7 +11,15 @@ from matplotlib.figure import Figure
 from uq.errors import InputError
 from uq.render.figures.figure import Drawing
 from uq.render.figures.panel import above, column, figure_of, finish, roomy, whole_numbers
-from uq.render.figures.quantities import families, find, label_axes, pair, scale_of, with_quantities
+from uq.render.figures.quantities import (
+    axis_unit,
+    families,
+    find,
+    in_unit,
+    label_axes,
+    pair,
+    with_quantities,
+)
 from uq.render.figures.style import (
     COLOURS,
     INK,
@@ -70,21 +78,21 @@ def history(
     if not groups:
         raise InputError("no variable varies along time")
     variables = [[find(ds, name) for name in group] for group in groups]
-    scales = [scale_of(group) for group in variables]
-    clock = scale_of([find(ds, "time")])
-    time = ds["time"].values * clock.factor
+    units = [axis_unit(group) for group in variables]
+    clock = axis_unit([find(ds, "time")])
+    time = in_unit(ds["time"].values, clock)
     panels = column(axes, 0.4 + 1.0 * len(groups), len(groups))
-    for panel, group, scale in zip(panels, variables, scales, strict=True):
+    for panel, group, unit in zip(panels, variables, units, strict=True):
         for i, variable in enumerate(group):
             colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
-            series, text = variable.values * scale.factor, labelled(variable)
+            series, text = in_unit(variable.values, unit), labelled(variable)
             panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
         if len(group) > 1:
-            panel.set_ylabel(f"[{powers(scale.unit)}]")
+            panel.set_ylabel(f"[{powers(unit.name)}]")
             panel.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
         else:
-            above(panel, labelled(group[0], scale.unit))
-    panels[-1].set_xlabel(labelled(ds["time"], clock.unit))
+            above(panel, labelled(group[0], unit.name))
+    panels[-1].set_xlabel(labelled(ds["time"], clock.name))
     return figure_of(panels[0])
 
 
@@ -108,7 +116,7 @@ def motion(ds: xr.Dataset) -> Figure:
     places = sorted(np.flatnonzero(order >= 0), key=lambda place: order[place])
     series = with_quantities(ds)
     period = float(trajectory.attrs["period"])
-    clock = scale_of([ds["time"]])
+    clock = axis_unit([ds["time"]])
     time = ds["time"].values
     last = time >= time[-1] - _LAST * period
     columns = 2 if 0 < last.sum() < len(time) / 2 else 1
@@ -122,21 +130,22 @@ def motion(ds: xr.Dataset) -> Figure:
             variable.attrs["long_name"] = str(variable.attrs["long_name"]).removesuffix(
                 ", turns included"
             )
-        scale = scale_of([variable])
+        unit = axis_unit([variable])
         stops = trajectory["lower_stop"].values[place], trajectory["upper_stop"].values[place]
         for panel, part in zip(row, (slice(None), last), strict=False):
-            y = variable.values[part] * scale.factor
-            panel.plot(time[part] * clock.factor, y, color=INK, lw=0.6)
+            y = in_unit(variable.values[part], unit)
+            panel.plot(in_unit(time[part], clock), y, color=INK, lw=0.6)
             for stop in filter(np.isfinite, stops):
-                panel.axhline(stop * scale.factor, color=LIMIT, ls="--", lw=0.8)
-            _widen(panel, _FINEST * np.nanmax(np.abs(variable.values), initial=0.0) * scale.factor)
-        text = labelled(variable, scale.unit, width=_ABOVE)
+                panel.axhline(in_unit(stop, unit), color=LIMIT, ls="--", lw=0.8)
+            largest = np.nanmax(np.abs(variable.values), initial=0.0)
+            _widen(panel, in_unit(_FINEST * largest, unit))
+        text = labelled(variable, unit.name, width=_ABOVE)
         if count := int(np.isfinite(stops).sum()):
             dashed = f"dashed: stop{'s' * (count > 1)}"
             text += (", " if len(text) + len(dashed) < _ABOVE else "\n") + dashed
         above(row[0], text)
     for panel in panels[-1]:
-        panel.set_xlabel(labelled(ds["time"], clock.unit))
+        panel.set_xlabel(labelled(ds["time"], clock.name))
         roomy(panel)
     if columns == 2:
         above(panels[0, 1], f"The last {_LAST} periods of the drive")
@@ -194,12 +203,12 @@ def phase_portrait(
     ds = with_quantities(ds)
     across, up = pair(ds, against, output)
     (axes,) = column(axes, 2.6)
-    scales = label_axes(axes, across, up, _BESIDE)
-    for xs, ys, style in families(across, up, scales):
+    units = label_axes(axes, across, up, _BESIDE)
+    for xs, ys, style in families(across, up, units):
         thin = 0.7 if len(xs) < 5000 else 0.4
         axes.plot(xs, ys, lw=thin, rasterized=are_many(len(xs) // 10), **style)
     if section is not None:
-        for xs, ys, style in families(*pair(section, against, output), scales):
+        for xs, ys, style in families(*pair(section, against, output), units):
             name = f"Poincaré section {style['label']}".strip()
             axes.plot(xs, ys, "ko", ms=MARK, mew=0, label=name)
     return finish(axes)
@@ -234,8 +243,8 @@ def section(
     """
     across, up = pair(ds, against, output)
     (axes,) = column(axes, 2.6)
-    scales = label_axes(axes, across, up, _BESIDE)
-    for xs, ys, style in families(across, up, scales):
+    units = label_axes(axes, across, up, _BESIDE)
+    for xs, ys, style in families(across, up, units):
         size, many = point_size("section", _places(xs, ys)), are_many(len(xs))
         axes.plot(xs, ys, "o", ms=size, mew=0, rasterized=many, **style)
     return finish(axes)

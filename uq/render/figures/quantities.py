@@ -1,7 +1,7 @@
-"""Quantities of a Dataset on axes: their labels, units and scales."""
+"""Quantities of a Dataset on axes: their labels and units."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,22 +11,7 @@ from uq.errors import InputError, nearest
 from uq.render.figures.style import COLOURS
 from uq.render.figures.words import in_words, labelled, literal
 from uq.result.elements import Floats
-from uq.text.units import unit_of
-
-
-class AxisScale(NamedTuple):
-    """The scale and unit of an axis.
-
-    Attributes
-    ----------
-    factor : float
-        Values are multiplied by it.
-    unit : str
-        Of the scaled values.
-    """
-
-    factor: float
-    unit: str
+from uq.text.units import ReadableUnit, unit_of
 
 
 def with_quantities(ds: xr.Dataset) -> xr.Dataset:
@@ -80,8 +65,8 @@ def pair(ds: xr.Dataset, x: str, y: str) -> tuple[xr.DataArray, xr.DataArray]:
     return across, up
 
 
-def scale_of(variables: Sequence[xr.DataArray]) -> AxisScale:
-    """Return a suitable scale for quantities that share an axis: 0.00025 m become 0.25 mm.
+def axis_unit(variables: Sequence[xr.DataArray]) -> ReadableUnit:
+    """Return a readable unit for quantities that share an axis: 0.00025 m become 0.25 mm.
 
     Parameters
     ----------
@@ -90,7 +75,7 @@ def scale_of(variables: Sequence[xr.DataArray]) -> AxisScale:
 
     Returns
     -------
-    AxisScale
+    ReadableUnit
 
     Raises
     ------
@@ -105,14 +90,13 @@ def scale_of(variables: Sequence[xr.DataArray]) -> AxisScale:
         unlike = ", ".join(f"{name} [{unit}]" for unit, name in units.items())
         raise InputError(f"quantities of different units cannot share an axis: {unlike}")
     (unit,) = units
-    shown = unit_of(unit, max(_largest(variable) for variable in variables))
-    return AxisScale(1 / shown.size, shown.name)
+    return unit_of(unit, max(_largest(variable) for variable in variables))
 
 
 def label_axes(
     axes: Axes, across: xr.DataArray, up: xr.DataArray, width: int = 26
-) -> tuple[AxisScale, AxisScale]:
-    """Label both axes of a panel, and return their scales.
+) -> tuple[ReadableUnit, ReadableUnit]:
+    """Label both axes of a panel, and return their units.
 
     Parameters
     ----------
@@ -122,14 +106,14 @@ def label_axes(
     width : int
         Of a line beside the vertical axis [characters].
     """
-    scales = scale_of([across]), scale_of([up])
-    axes.set_xlabel(labelled(across, scales[0].unit))
-    axes.set_ylabel(labelled(up, scales[1].unit, width))
-    return scales
+    units = axis_unit([across]), axis_unit([up])
+    axes.set_xlabel(labelled(across, units[0].name))
+    axes.set_ylabel(labelled(up, units[1].name, width))
+    return units
 
 
 def families(
-    across: xr.DataArray, up: xr.DataArray, scales: Sequence[AxisScale]
+    across: xr.DataArray, up: xr.DataArray, units: Sequence[ReadableUnit]
 ) -> Iterator[tuple[Floats, Floats, dict[str, Any]]]:
     """Yield the scaled coordinates of each curve along the last dimension, its colour and label."""
     if across.ndim == 1:
@@ -137,7 +121,12 @@ def families(
     for i, (x, y) in enumerate(zip(across.values, up.values, strict=True)):
         name = place_in(across, i) if len(across) > 1 else ""
         style = {"color": COLOURS[i % len(COLOURS)], "label": name}
-        yield x * scales[0].factor, y * scales[1].factor, style
+        yield in_unit(x, units[0]), in_unit(y, units[1]), style
+
+
+def in_unit(values: Any, unit: ReadableUnit) -> Any:
+    """Return values in the unit of an axis."""
+    return values * (1 / unit.size)
 
 
 def place_in(variable: xr.DataArray, i: int) -> str:

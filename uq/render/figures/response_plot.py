@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from uq.errors import InputError
 from uq.render.figures.panel import column, finish
-from uq.render.figures.quantities import families, find, label_axes, pair, scale_of
+from uq.render.figures.quantities import axis_unit, families, find, in_unit, label_axes, pair
 from uq.render.figures.style import COLOURS, LINES, are_many, point_size, styled
 from uq.render.figures.words import as_label, literal, powers
 from uq.result.result import AnyResult, Result
-from uq.text.numbers import in_unit, minus, percent
-from uq.text.units import ReadableUnit
+from uq.text import numbers
+from uq.text.numbers import minus, percent
 
 _MOST_CHANGES = 12  # of regime that are marked along a curve
 _WIDE, _NARROW = 60, 36  # characters of a line of the legend, of a figure and of a panel
@@ -59,15 +59,15 @@ def curve(
     result = Result.of(result)
     across, up = pair(result.dataset, against or _first_dimension(result, output), output)
     (axes,) = column(axes, 2.2)
-    scales = label_axes(axes, across, up)
+    units = label_axes(axes, across, up)
     along = across.dims[0]
     across, up = across.transpose(..., along), up.transpose(..., along)
-    for i, (xs, ys, style) in enumerate(families(across, up, scales)):
+    for i, (xs, ys, style) in enumerate(families(across, up, units)):
         axes.plot(xs, ys, ls=LINES[i % len(LINES)], **style)
     if "regime" in result.dataset and result.dataset["regime"].dims == (along,):
         kinds = result.dataset["regime"].values
         changed = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
-        changes = np.unique(across.values[..., changed]) * scales[0].factor
+        changes = in_unit(np.unique(across.values[..., changed]), units[0])
         for i, where in enumerate(changes if len(changed) <= _MOST_CHANGES else ()):
             text = "" if i else "change of regime"
             axes.axvline(where, color="black", ls=":", lw=0.7, zorder=0, label=text)
@@ -117,12 +117,10 @@ def bifurcation(
     kinds = find(result.dataset, by) if by else xr.full_like(across, "", dtype=object)
     declared = str(kinds.attrs.get("flag_meanings", "")).split()
     (axes,) = column(axes, 2.4)
-    scales = label_axes(axes, across, up)
+    units = label_axes(axes, across, up)
     up, across, kinds = xr.broadcast(up, across, kinds)
     finite = np.isfinite(up.values)
-    values, places = (
-        variable.values * s.factor for variable, s in ((up, scales[1]), (across, scales[0]))
-    )
+    places, values = in_unit(across.values, units[0]), in_unit(up.values, units[1])
     for word, colour in _coloured(kinds.values[finite], declared):
         chosen = finite & (kinds.values == word)
         points = places[chosen], values[chosen]
@@ -170,13 +168,13 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     width = _WIDE if axes is None else _NARROW
     texts = [_basin(ds.isel(basin=i), outputs, width) for i in range(ds.sizes["basin"])]
     (axes,) = column(axes, 2.6)
-    scales = label_axes(axes, across, up)
+    units = label_axes(axes, across, up)
     # If there are more attractors than colours, the rare ones share the last.
     shown = np.where(attractor.values < 0, len(COLOURS) + 1, attractor.values)
     shown = np.where(attractor.values >= len(COLOURS), len(COLOURS), shown)
     axes.pcolormesh(
-        across.values * scales[0].factor,
-        up.values * scales[1].factor,
+        in_unit(across.values, units[0]),
+        in_unit(up.values, units[1]),
         shown.T,
         cmap=ListedColormap([*COLOURS, _OTHERS, _FAILED]),
         vmin=-0.5,
@@ -211,8 +209,7 @@ def _basin(basin: xr.Dataset, outputs: Sequence[str], width: int) -> str:
             parts.append(f"{output.replace('_', ' ')} {text}" if text.isdecimal() else text)
     for name in outputs:
         value = find(basin, f"representative_{name}")
-        scale = scale_of([value])
         rounded = float(f"{value.item():.3g}")
-        text = powers(in_unit(rounded, ReadableUnit(scale.unit, 1 / scale.factor)))
+        text = powers(numbers.in_unit(rounded, axis_unit([value])))
         parts.append(minus(text))
     return as_label(", ".join([*parts, percent(float(basin["share"]))]), width=width)

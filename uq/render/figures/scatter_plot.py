@@ -221,10 +221,10 @@ def _fragments(mask: Mask) -> Mask:
 
 def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
     """Return the inputs in order of how much the mean rank of the output varies over slices."""
-    from scipy.stats import rankdata
-
     present = element.present
-    ranks = rankdata(element.at_most)
+    # Not scipy.stats.rankdata, whose import takes longer than most figures.
+    _, place, counts = np.unique(element.at_most, return_inverse=True, return_counts=True)
+    ranks = (np.cumsum(counts) - (counts - 1) / 2)[place]
     count = max(1, min(_MOST_BINS, len(ranks) // _IN_BIN))
 
     def between(x: Floats) -> float:

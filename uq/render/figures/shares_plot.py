@@ -41,9 +41,8 @@ def shares(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figur
     if not result.is_category(name):
         raise InputError(f"'{output}' is no category of this result")
     rows = result.independent
-    weights = rows.weights
     by_element = {
-        element: category_shares(rows, element, weights) for element in rows.codes(output)
+        element: category_shares(rows, element, rows.weights) for element in rows.codes(output)
     }
     labels = [
         label

@@ -16,9 +16,9 @@ Reading order; each part imports only those above it:
     folded            secondary parts of the answer, as HTML to be unfolded
     embedded_columns  the columns of numbers inside a page
     tolerances        other tolerances
+    indices           sensitivities in a report: one table for each target of each method
     pictures          figures of a page: embedded SVG, or an image if the SVG would be too large
     fleets            fleets in a report: as many units as a sample has
-    indices           sensitivities in a report: one table for each target of each method
     inputs            the inputs in a report: laws, sources, and how well each number is known
     levels            variance by level in a report: shared, own, or due to chance
     outcomes          the rows in a report: how they ended, and the statistics of the outputs

@@ -11,6 +11,7 @@ from uq.assess.statistic import Statistic
 from uq.assess.targets import FORMS, split_name
 from uq.render.html.bars import bar
 from uq.stats.estimate_text import failed_bounds_text
+from uq.stats.estimate import Estimate
 
 SHARE = "share"
 """The scale of shares: from 0 to 1."""
@@ -85,7 +86,7 @@ def cell(statistic: Statistic, per: float = 1.0, scale: str = "") -> Cell:
 
     Parameters
     ----------
-    one : Statistic
+    statistic : Statistic
     per : float
         Length of the unit that the cell is in.
     scale : str, optional
@@ -108,6 +109,14 @@ def cell(statistic: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     key = estimate.value if isfinite(estimate.value) else last
     ends = (estimate.low, estimate.high)
     return Cell(text, "; ".join(filter(None, small)), key, scale=scale, ends=ends)
+
+
+def estimate_cell(
+    text: str, more: str, estimate: Estimate, traced: str = "", scale: str = ""
+) -> Cell:
+    """Return the cell of an estimate written as text, which it is sorted by where it is finite."""
+    key = estimate.value if isfinite(estimate.value) else None
+    return Cell(text, more, key, traced, scale, (estimate.low, estimate.high))
 
 
 def without_empty_columns(table: HtmlTable) -> HtmlTable:

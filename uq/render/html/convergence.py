@@ -1,6 +1,6 @@
 """Convergence in a report: running estimates, and the errors of the rows themselves."""
 
-from typing import NamedTuple, cast
+from typing import Any, cast
 
 import pandas as pd
 
@@ -9,49 +9,33 @@ from uq.assess.findings import Findings
 from uq.errors import InputError
 from uq.render.html.cells import Cell, HtmlTable, without_empty_columns
 from uq.render.html.outcomes import Outcome
-from uq.render.html.pictures import Picture, pictures
+from uq.render.html.pictures import pictures
 from uq.text.keys import key_of
 from uq.text.numbers import number
 
 
-class Convergence(NamedTuple):
-    """The convergence of the estimates of a result.
-
-    Attributes
-    ----------
-    table : HtmlTable or None
-        The sampling error and the error of the rows themselves.
-    warnings : list of str
-    refused : str
-        Why there are no running estimates, or "".
-    pictures : list of Picture
-    """
-
-    table: HtmlTable | None
-    warnings: list[str]
-    refused: str
-    pictures: list[Picture]
-
-
-def convergence_of(findings: Findings, outcomes: list[Outcome]) -> Convergence:
+def convergence_of(findings: Findings, outcomes: list[Outcome]) -> dict[str, Any]:
     """Return the convergence of a result.
 
     Parameters
     ----------
     findings : Findings
-    found : list of Outcome
+    outcomes : list of Outcome
         Its outputs.
 
     Returns
     -------
-    Convergence
+    dict
+        ``table``: the sampling error and the error of the rows themselves, or None; ``warnings``;
+        ``refused``: why there are no running estimates, or ""; ``pictures``.
     """
+    nothing: dict[str, Any] = {"table": None, "warnings": [], "pictures": []}
     if not outcomes:
-        return Convergence(None, [], "there is no numeric output", [])
+        return nothing | {"refused": "there is no numeric output"}
     try:
         errors = enough(findings.result)
     except InputError as refused:
-        return Convergence(None, [], str(refused), [])
+        return nothing | {"refused": str(refused)}
     lines = [
         (outcome, cast(pd.Series, errors.loc[outcome.name]))
         for outcome in outcomes
@@ -61,10 +45,14 @@ def convergence_of(findings: Findings, outcomes: list[Outcome]) -> Convergence:
         _row(outcome, line) for outcome, line in lines if line[["sampling", "own"]].notna().any()
     ]
     header = ("output", "unit", "estimate", "half-width of the interval", "error of the rows")
-    table = without_empty_columns(HtmlTable("Sampling error", header, rows)) if rows else None
-    warnings = [f"{outcome.name}: {line['warning']}" for outcome, line in lines if line["warning"]]
-    drawn = list(pictures(findings, "convergence"))
-    return Convergence(table, warnings, findings.running.attrs.get("refused", ""), drawn)
+    return {
+        "table": without_empty_columns(HtmlTable("Sampling error", header, rows)) if rows else None,
+        "warnings": [
+            f"{outcome.name}: {line['warning']}" for outcome, line in lines if line["warning"]
+        ],
+        "refused": findings.running.attrs.get("refused", ""),
+        "pictures": list(pictures(findings, "convergence")),
+    }
 
 
 def _row(outcome: Outcome, errors: pd.Series) -> tuple[Cell, ...]:

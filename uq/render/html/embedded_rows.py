@@ -84,7 +84,7 @@ def rows_inside(
         "file": shlex.quote(plain(file)),
         "extent": _extent(len(rows), len(whole)),
         "absence": _absence(len(rows), len(whole)),
-        "allowed": _allowed(findings.result),
+        "allowed": [int(end(findings.result.dataset["row"].values)) for end in (np.min, np.max)],
         "numbers": encoded(rows.dataset["row"].values, "<i4"),
         "columns": columns,
         "categories": list(_categories(rows)),
@@ -111,12 +111,6 @@ def _absence(count: int, total: int) -> str:
         f"Not among the {grouped(count)} rows in this page, {part}; the command computes it again."
     )
     return printed(words)
-
-
-def _allowed(result: Result) -> list[int]:
-    """Return the first and last number of a row, whether the page holds it or not."""
-    numbers = result.dataset["row"].values
-    return [int(numbers.min()), int(numbers.max())]
 
 
 def why_no_rows(findings: Findings) -> str:

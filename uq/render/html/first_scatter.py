@@ -44,15 +44,8 @@ def first_input(inputs: dict[str, Floats], element: Element, answered: Sequence[
     Where it names none, that over which the mean rank of the element varies most.
     """
     quantities = [quantity for quantity in answered if quantity.name == element.name]
-    rankings = [quantity.ranking for quantity in quantities] + [
-        event.ranking for quantity in quantities for event in quantity.events
-    ]
+    events = [event for quantity in quantities for event in quantity.events]
+    rankings = [quantity.ranking for quantity in quantities] + [event.ranking for event in events]
     leaders = [ranking.leader for ranking in rankings if ranking is not None]
-    named = [
-        name
-        for contribution in leaders
-        if contribution is not None
-        for name in contribution.inputs
-        if name in inputs
-    ]
+    named = [name for leader in leaders if leader for name in leader.inputs if name in inputs]
     return (named or leading(inputs, element))[0]

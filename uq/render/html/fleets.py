@@ -2,13 +2,11 @@
 
 from collections.abc import Iterator
 from functools import partial
-from math import isfinite
 
 from uq.assess.findings import Findings
 from uq.assess.fleet import Fleet
 from uq.assess.fleet_numbers import Banded
-from uq.render.html.cells import Cell, HtmlTable
-from uq.stats.estimate import Estimate
+from uq.render.html.cells import Cell, HtmlTable, estimate_cell
 from uq.stats.estimate_text import interval_text, value_text
 from uq.text.keys import key_of
 from uq.text.numbers import counted, in_brackets, threshold
@@ -52,12 +50,10 @@ def _row(
     name: str, quantity: str, banded: Banded, traced: str, per: float = 1.0
 ) -> tuple[Cell, ...]:
     ends = ((banded.estimate, ""), (banded.low, "/band_low"), (banded.high, "/band_high"))
-    cells = (_cell(end, per, f"{traced}{last}") for end, last in ends)
-    return Cell(name), Cell(quantity), *cells
-
-
-def _cell(estimate: Estimate, per: float, traced: str) -> Cell:
-    key = estimate.value if isfinite(estimate.value) else None
-    return Cell(
-        value_text(estimate, per=per), interval_text(estimate, per) or estimate.reason, key, traced
+    cells = (
+        estimate_cell(
+            value_text(end, per=per), interval_text(end, per) or end.reason, end, f"{traced}{last}"
+        )
+        for end, last in ends
     )
+    return Cell(name), Cell(quantity), *cells

@@ -14,7 +14,7 @@ def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> 
 
     Parameters
     ----------
-    found : Answer
+    answer : Answer
     drawn : list of Picture
         The figures of the results.
     by_regime : list of Picture
@@ -22,7 +22,7 @@ def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> 
     """
     lead = answer.lead
     figures = [
-        (drawn, figure) for figure in drawn if lead is not None and figure.of.name == lead.output
+        (drawn, figure) for figure in drawn if lead is not None and figure.subject == lead.output
     ]
     if answer.regimes_first:
         figures = [*((by_regime, figure) for figure in by_regime), *figures]

@@ -1,9 +1,9 @@
 """Sensitivities in a report: one table for each target of each method."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from math import isfinite
+from itertools import chain
 from typing import NamedTuple
 
 from uq.assess.answer.number_targets import NumberTarget
@@ -14,7 +14,7 @@ from uq.assess.targets import split_name
 from uq.errors import InputError
 from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
 from uq.render.figures.index_plot import subject
-from uq.render.html.cells import SHARE, Cell, HtmlTable
+from uq.render.html.cells import SHARE, Cell, HtmlTable, estimate_cell
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
@@ -50,13 +50,8 @@ class IndexTable(NamedTuple):
         return output_of(self.name)
 
 
-class MethodTable(NamedTuple):
-    """The results of one method, or in ``refused`` why there are none."""
-
-    name: str
-    refused: str = ""
-    used: str = ""
-    subjects: tuple[IndexTable, ...] = ()
+Methods = Mapping[str, tuple[str, Sequence[IndexTable]]]
+"""Method -> the rows that it uses, or why it has no indices; and the indices of each target."""
 
 
 def output_of(target: str) -> str:
@@ -64,33 +59,21 @@ def output_of(target: str) -> str:
     return re.split(r"[\[=]", split_name(target)[1])[0]
 
 
-def sensitivity_of(findings: Findings) -> list[MethodTable]:
-    """Return the indices by each method of the study.
-
-    Parameters
-    ----------
-    findings : Findings
-
-    Returns
-    -------
-    list of MethodTable
-    """
-    return [_method(findings, name) for name in methods(findings.result)]
+def sensitivity_of(findings: Findings) -> Methods:
+    """Return the indices by each method of the study."""
+    return {name: _method(findings, name) for name in methods(findings.result)}
 
 
-def _method(findings: Findings, name: str) -> MethodTable:
+def _method(findings: Findings, name: str) -> tuple[str, list[IndexTable]]:
     try:
         sensitivities = findings.sensitivities(name)
     except InputError as error:
-        return MethodTable(name, refused=str(error))
+        return str(error), []
     used = f"from {counted(sensitivities.rows_used, 'row')}"
     if sensitivities.groups_dropped:
         used += f"; {counted(sensitivities.groups_dropped, 'group')} with missing values dropped"
-    subjects = (
-        _subject(findings.result, name, target_indices)
-        for target_indices in sensitivities.targets.values()
-    )
-    return MethodTable(name, used=used, subjects=tuple(subjects))
+    targets = sensitivities.targets.values()
+    return used, [_subject(findings.result, name, target_indices) for target_indices in targets]
 
 
 def _subject(result: Result, method: str, target_indices: TargetIndices) -> IndexTable:
@@ -106,26 +89,17 @@ def _subject(result: Result, method: str, target_indices: TargetIndices) -> Inde
         _table(caption, index_kind, indices, traced) for caption, index_kind in listed if index_kind
     )
     if indices.noise:
-        line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
+        line = [(Cell("noise"), index_cell(S1, indices.noise, traced("noise")))]
         tables += (HtmlTable(f"Share of noise in the variance of {of}", ("", "share"), line),)
     return IndexTable(name, words, tables, indices.notes)
 
 
-def of_output(methods: Sequence[MethodTable], output: str) -> list[IndexTable]:
-    """Return the indices of an output, those of a target by all methods together.
-
-    Parameters
-    ----------
-    methods : sequence of MethodTable
-    output : str
-    """
+def of_output(methods: Methods, output: str) -> list[IndexTable]:
+    """Return the indices of an output, those of a target by all methods together."""
     tables: dict[str, IndexTable] = {}
-    for index_table in (
-        index_table
-        for method in methods
-        for index_table in method.subjects
-        if index_table.output == output
-    ):
+    for index_table in chain.from_iterable(subjects for _, subjects in methods.values()):
+        if index_table.output != output:
+            continue
         merged = tables.get(index_table.name, IndexTable(index_table.name, index_table.words))
         notes = (*dict.fromkeys(merged.notes + index_table.notes),)
         tables[index_table.name] = merged._replace(
@@ -144,7 +118,7 @@ def _table(
         for kind, estimate in zip(values, estimates, strict=True):
             dummy = ("dummy", f"{kind.key}{'_any' * label.startswith('(largest')}")
             path = (kind.key, label) if label in values[kind] else dummy
-            yield _cell(
+            yield index_cell(
                 kind, estimate, traced(*path) if path != dummy or kind in indices.nulls else ""
             )
 
@@ -155,14 +129,8 @@ def _table(
     return HtmlTable(caption, ("input", *(kind.words for kind in values)), rows)
 
 
-def _cell(kind: IndexKind, estimate: Estimate, traced: str) -> Cell:
-    key = estimate.value if isfinite(estimate.value) else None
+def index_cell(kind: IndexKind, estimate: Estimate, traced: str) -> Cell:
+    """Return the cell of an index with its bar and interval."""
     scale = {"variance": SHARE, "p-value": ""}.get(kind.unit, kind.key)
-    return Cell(
-        kind.text(estimate.value),
-        kind.interval(estimate),
-        key,
-        traced,
-        scale,
-        (estimate.low, estimate.high),
-    )
+    text = kind.text(estimate.value)
+    return estimate_cell(text, kind.interval(estimate), estimate, traced, scale)

@@ -11,7 +11,14 @@ from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import REGIME, Described, Shares, Summary
 from uq.contract import Output, Status
 from uq.render.figures.words import place_in_words, unbroken
-from uq.render.html.cells import SHARE, Cell, HtmlTable, cell, without_empty_columns
+from uq.render.html.cells import (
+    SHARE,
+    Cell,
+    HtmlTable,
+    cell,
+    estimate_cell,
+    without_empty_columns,
+)
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
@@ -39,7 +46,7 @@ def category_table(name: str, shares: Shares) -> HtmlTable:
         (
             Cell(statistic.label),
             Cell(f"{count}", key=float(count), traced=key_of(*statistic.key, "count")),
-            _share(statistic.estimate)._replace(traced=key_of(*statistic.key, "share")),
+            _share(statistic.estimate, key_of(*statistic.key, "share")),
         )
         for statistic in shares.values()
         for count in [statistic.facts["count"]]
@@ -62,13 +69,11 @@ def regime_tables(findings: Findings) -> list[HtmlTable]:
     return tables
 
 
-def _share(estimate: Estimate) -> Cell:
+def _share(estimate: Estimate, traced: str) -> Cell:
     if isnan(estimate.value):
-        return Cell("-")
+        return Cell("-", traced=traced)
     below = percent_interval(estimate.low, estimate.high) if estimate.has_interval else ""
-    return Cell(
-        percent(estimate.value), below, estimate.value, "", SHARE, (estimate.low, estimate.high)
-    )
+    return estimate_cell(percent(estimate.value), below, estimate, traced, SHARE)
 
 
 _VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance", "joint_bounds")

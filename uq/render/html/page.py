@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
@@ -14,7 +13,7 @@ from uq.render.html.convergence import convergence_of
 from uq.render.html.embedded_rows import rows_inside, why_no_rows
 from uq.render.html.fleets import fleet_notes, fleet_table
 from uq.render.html.head import headline
-from uq.render.html.indices import of_output, output_of, sensitivity_of
+from uq.render.html.indices import of_output, sensitivity_of
 from uq.render.html.inputs import fixed_inputs, input_tables
 from uq.render.html.inspections import inspections_csv
 from uq.render.html.layout import laid_out
@@ -74,11 +73,6 @@ def page(result: Result, name: str) -> str:
     -------
     str
     """
-    return laid_out("page.html", result, file=name, **_content(result, name))
-
-
-def _content(result: Result, file: str) -> dict[str, Any]:
-    """Return what the template lays out."""
     findings = Findings(result)
     answer = conclude(findings)
     summary = findings.summary
@@ -89,7 +83,7 @@ def _content(result: Result, file: str) -> dict[str, Any]:
     headed = headline(answer, drawn, by_regime)
     lost = int(result.failed.sum())
     hashes = ("study_sha256", "study_identity")
-    return {
+    content = {
         "design": result.design,
         "summary": summary,
         "answer": headed,
@@ -101,19 +95,16 @@ def _content(result: Result, file: str) -> dict[str, Any]:
         "status": status_table(result, summary),
         "failed": lost,
         "regimes": regime_tables(findings),
-        "rows_drawn": [
-            *(figure for figure in drawn if output_of(figure.of.name) == REGIME),
-            *by_regime,
-        ],
+        "rows_drawn": [*(figure for figure in drawn if figure.output == REGIME), *by_regime],
         "regime_indices": of_output(methods, REGIME),
         "convergence": convergence_of(findings, described),
         "levels": levels_of(findings),
         "fleets": fleet_table(findings),
         "fleet_notes": fleet_notes(findings),
         "methods": methods,
-        "rows_inside": rows_inside(findings, file, answer.quantities),
+        "rows_inside": rows_inside(findings, name, answer.quantities),
         "why_no_rows": why_no_rows(findings),
-        "provenance": [name for name in (*provenance(), *hashes) if name in result.dataset.attrs],
+        "provenance": [key for key in (*provenance(), *hashes) if key in result.dataset.attrs],
         "result_file": result.file,
         "inspections": inspections_csv(result),
         "model_option": result.model_option,
@@ -122,3 +113,4 @@ def _content(result: Result, file: str) -> dict[str, Any]:
         else 0,
         "references": references(result),
     }
+    return laid_out("page.html", result, file=name, **content)

@@ -2,7 +2,7 @@
 
 import base64
 import re
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
 from io import BytesIO, StringIO
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -15,9 +15,10 @@ from matplotlib.figure import Figure
 
 from uq.assess.findings import Findings
 from uq.plots import FIGURES
-from uq.render.figures.catalogue import FigureSubject, drawables
+from uq.render.figures.catalogue import drawables
 from uq.render.figures.figure import lay_out
 from uq.render.figures.style import WIDTH, styled
+from uq.render.html.indices import output_of
 from uq.render.html.paths import shortened
 from uq.text.literals import plain
 from uq.text.symbols import readable
@@ -51,7 +52,12 @@ class Picture(NamedTuple):
     caption: str
     is_image: bool
     is_wide: bool = False
-    of: FigureSubject = FigureSubject()
+    subject: str = ""
+
+    @property
+    def output(self) -> str:
+        """The output that it is about."""
+        return output_of(self.subject)
 
 
 def pictures(findings: Findings, section: str, without: Container[str] = ()) -> Iterator[Picture]:
@@ -67,9 +73,13 @@ def pictures(findings: Findings, section: str, without: Container[str] = ()) -> 
     """
     for drawable in drawables(FIGURES, findings, section):
         if drawable.subject.name not in without:
-            yield picture(drawable.draw(), readable(drawable.caption), drawable.file)._replace(
-                of=drawable.subject
-            )
+            drawn = picture(drawable.draw(), readable(drawable.caption), drawable.file)
+            yield drawn._replace(subject=drawable.subject.name)
+
+
+def about(drawn: Sequence[Picture], name: str) -> list[Picture]:
+    """Return the figures of an output, and of its targets and events."""
+    return [figure for figure in drawn if name in (figure.subject, figure.output)]
 
 
 @styled

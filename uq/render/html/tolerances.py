@@ -1,17 +1,22 @@
 """Other tolerances: weights of rows for each stop of a slider, and what Python estimates there."""
 
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
-from math import inf, isfinite, isnan
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from math import inf, isfinite, isnan, nan
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import called, unit_of_input
 from uq.assess.row_inputs import Inputs, inputs_of
-from uq.assess.summary import Described, Summary, summarise
-from uq.assess.what_if import WhatIf, answer
+from uq.assess.scaling import population
+from uq.assess.statistic import Context, Statistic
+from uq.assess.statistics.quantiles import quantiles
+from uq.assess.statistics.thresholds import thresholds
+from uq.assess.what_if import weighting_of
 from uq.errors import InputError, RunError
 from uq.render.figures.words import meaning_of, symbol_beside
 from uq.render.html.encoded import IMPOSSIBLE, log_bytes
@@ -34,24 +39,8 @@ LISTED = "its values are listed and have neither width nor place"
 FEWEST = 100
 """Of several changes at once, a page shows no number where rows are worth fewer."""
 
-_PARTS = ("quantiles", "thresholds")
-
-
-class Asked(NamedTuple):
-    """What a slider shows.
-
-    Attributes
-    ----------
-    analysis : AnalysisTable
-        The thresholds of the study, and the quantiles that a bound rests on.
-    elements : sequence of Element
-    promises : dict of str to ToleranceBound
-        Of elements.
-    """
-
-    analysis: AnalysisTable
-    elements: Sequence[Element]
-    promises: Mapping[str, ToleranceBound]
+Statistics = Mapping[tuple[str, ...], Statistic]
+"""Name of an element, and key of a statistic -> this statistic."""
 
 
 def tolerances(
@@ -77,12 +66,38 @@ def tolerances(
         return None
     inputs = inputs_of(rows)
     without = {name: why for name in inputs.laws if (why := _why_without(name, inputs))}
-    asked = _asked(rows, elements, promises)
-    before = summarise(rows, asked.analysis, parts=_PARTS)
+    context = Context(rows, _analysis(rows, elements, promises))
+    outputs = rows.shown_outputs(context.analysis)
+    studied = _statistics(population(rows, outputs), context, promises)
+
+    def estimates(law_name: str, arguments: Arguments) -> dict[str, Any] | None:
+        """Return weights and estimates with other arguments of a law; None if they make none."""
+        changes = {f"uncertain.{law_name}.{key}": value for key, value in arguments.items()}
+        options = (f"--set {shlex.quote(f'{key}={toml(value)}')}" for key, value in changes.items())
+        stop = {"options": " ".join(options)}
+        try:
+            weighting = weighting_of(rows, changes, inputs)
+            then = _statistics(weighting.elements(outputs), context, promises)
+            weighting.refuse_if_unused()
+        except RunError as refusal:
+            return stop | {"quality": plain(printed(f"{capitalized(str(refusal))}."))}
+        except InputError:
+            return None
+        weights = weighting.all_inputs
+        embedded = {} if weights.refusal else {"weights": log_bytes(weights.weights)}
+        bounds = {name: _promised_then(then, studied, name, promises[name]) for name in promises}
+        refused = {name: weights.refusal for name, weights in weighting.refused.items()}
+        return (
+            stop
+            | embedded
+            | {"quality": _quality(*weighting.quality, rows)}
+            | {"events": _events(then, elements, context, refused), "promised": bounds}
+        )
+
     sliders = [
         slider
-        for name in inputs.laws
-        if name not in without and (slider := _slider(rows, name, inputs, asked, before))
+        for name, law in inputs.laws.items()
+        if name not in without and (slider := _slider(rows, name, law, partial(estimates, name)))
     ]
     if not sliders:
         return None
@@ -93,7 +108,7 @@ def tolerances(
         "correlated": list(inputs.correlated),
         "studied": {
             "quality": "The laws of the study.",
-            "events": _estimates(before, asked),
+            "events": _events(studied, elements, context),
             "promised": {name: _promised_now(bound) for name, bound in promises.items()},
         },
         "fewest": FEWEST,
@@ -119,10 +134,10 @@ def _why_without(name: str, inputs: Inputs) -> str:
     return ""
 
 
-def _asked(
+def _analysis(
     rows: Result, elements: Sequence[Element], promises: Mapping[str, ToleranceBound]
-) -> Asked:
-    """Return the estimates at each stop."""
+) -> AnalysisTable:
+    """Return the thresholds of the study, and the quantiles that promised bounds rest on."""
     analysis = rows.analysis
     shown = {
         element.output: None
@@ -132,20 +147,32 @@ def _asked(
     bounds = promises.values()
     quantiles = {p: None for bound in bounds for p in bound.probabilities if bound.of_quantile(p)}
     changed = {"quantiles": tuple(quantiles), "outputs": tuple(shown)}
-    return Asked(analysis.model_copy(update=changed), elements, promises)
+    return analysis.model_copy(update=changed)
+
+
+def _statistics(
+    elements: Iterable[Element], context: Context, promises: Mapping[str, ToleranceBound]
+) -> Statistics:
+    """Return the probabilities of events, and the quantiles that promised bounds rest on."""
+    return {
+        (element.name, *statistic.key): statistic
+        for element in elements
+        for makers in [(thresholds, quantiles) if element.name in promises else (thresholds,)]
+        for make in makers
+        for statistic in make(element, context)
+    }
 
 
 def _slider(
-    rows: Result, name: str, inputs: Inputs, asked: Asked, before: Summary
+    rows: Result, name: str, law: Law, estimates: Callable[[Arguments], dict[str, Any] | None]
 ) -> dict[str, Any] | None:
     """Return the stops of an input; None where none is possible."""
-    law = inputs.laws[name]
 
     def stops(moved: Iterator[tuple[float, Arguments]], studied: float) -> list[dict[str, Any]]:
         moves = [
-            {"at": at, **stop}
+            {"at": at, "words": _words(rows, name, law, arguments)} | stop
             for at, arguments in moved
-            if arguments and (stop := _stop(rows, name, law, arguments, asked, before))
+            if arguments and (stop := estimates(arguments))
         ]
         neutral = {"at": studied, "words": _words(rows, name, law, vars(law))}
         return sorted([*moves, neutral], key=lambda stop: stop["at"]) if moves else []
@@ -172,39 +199,12 @@ def _place_of_study(stops: Sequence[Mapping[str, Any]]) -> int:
     return next(place for place, stop in enumerate(stops) if "options" not in stop)
 
 
-def _stop(
-    rows: Result, name: str, law: Law, arguments: Arguments, asked: Asked, before: Summary
-) -> dict[str, Any] | None:
-    """Return weights and estimates of the rows with other arguments of one law.
-
-    None where these make no law of the parameter.
-    """
-    changes = {f"uncertain.{name}.{key}": value for key, value in arguments.items()}
-    options = (f"--set {shlex.quote(f'{key}={toml(value)}')}" for key, value in changes.items())
-    stop = {"words": _words(rows, name, law, arguments), "options": " ".join(options)}
-    try:
-        reweighted = answer(rows, changes, asked.analysis, _PARTS if asked.analysis.outputs else ())
-    except RunError as refusal:
-        return stop | {"quality": plain(printed(f"{capitalized(str(refusal))}."))}
-    except InputError:
-        return None
-    weights = reweighted.weights
-    embedded = {} if weights.refusal else {"weights": log_bytes(weights.weights)}
-    then = {
-        name: _promised_then(reweighted.summary, before, name, promise)
-        for name, promise in asked.promises.items()
-    }
-    estimates = {"events": _estimates(reweighted.summary, asked), "promised": then}
-    return stop | embedded | {"quality": _quality(reweighted, rows)} | estimates
-
-
-def _quality(reweighted: WhatIf, rows: Result) -> str:
+def _quality(effective_rows: float, pareto_k: float, rows: Result) -> str:
     """Return how many equal rows the weights are worth."""
-    k = reweighted.pareto_k
-    tail = f" (Pareto k = {k:.2g})" if isfinite(k) else ""
+    tail = f" (Pareto k = {pareto_k:.2g})" if isfinite(pareto_k) else ""
     count, name = _independent(rows)
-    digits = f"{reweighted.effective_rows:.3g}"
-    worth = grouped(int(float(digits))) if reweighted.effective_rows >= 1000 else digits
+    digits = f"{effective_rows:.3g}"
+    worth = grouped(int(float(digits))) if effective_rows >= 1000 else digits
     return printed(f"These weights are worth {worth} of {grouped(count)} {name}{tail}.")
 
 
@@ -236,12 +236,21 @@ def _words(rows: Result, name: str, law: Law, arguments: Arguments) -> str:
     return plain(printed(", ".join(words(key, value) for key, value in shown.items())))
 
 
-def _estimates(summary: Summary, asked: Asked) -> dict[str, dict[str, Any]]:
+def _events(
+    statistics: Statistics,
+    elements: Sequence[Element],
+    context: Context,
+    refused: Mapping[str, str] = MappingProxyType({}),
+) -> dict[str, dict[str, Any]]:
     """Return the probabilities of the events that the study asks about."""
     return {
-        event_key(element, value): _cell(summary, element, value)
-        for element in asked.elements
-        for value in asked.analysis.thresholds.get(element.output, ())
+        event_key(element, value): _cell(
+            statistics.get((element.name, "thresholds", repr(value), side)),
+            refused.get(element.name, ""),
+        )
+        for element in elements
+        for side in ["below" if element.is_lifetime else "above"]
+        for value in context.analysis.thresholds.get(element.output, ())
     }
 
 
@@ -250,13 +259,10 @@ def event_key(element: Element, threshold: float) -> str:
     return f"{element.name}/{threshold:.15g}"
 
 
-def _cell(summary: Summary, element: Element, threshold: float) -> dict[str, Any]:
+def _cell(statistic: Statistic | None, refused: str) -> dict[str, Any]:
     """Return a probability with its interval, as numbers and in words."""
-    described = summary.outputs.get(element.name)
-    side = "below" if element.is_lifetime else "above"
-    statistic = described.find("thresholds", repr(threshold), side) if described else None
     if statistic is None:
-        return {"value": None, "more": _why_missing(summary, element.name)}
+        return {"value": None, "more": plain(printed(refused))}
     estimate = statistic.best.estimate
     value, low, high = estimate.numbers
     if isnan(value):
@@ -272,13 +278,6 @@ def _cell(summary: Summary, element: Element, threshold: float) -> dict[str, Any
     }
 
 
-def _why_missing(summary: Summary, name: str) -> str:
-    """Return the note on weights that cannot be trusted."""
-    start = f"{name}: "
-    notes = (note.removeprefix(start) for note in summary.notes if note.startswith(start))
-    return plain(printed(next(notes, "")))
-
-
 def _promised_now(promise: ToleranceBound) -> list[str]:
     """Return the bounds that are promised, and that a quantile of weighted rows could replace."""
     bounds = map(promise.of_quantile, promise.probabilities)
@@ -286,11 +285,14 @@ def _promised_now(promise: ToleranceBound) -> list[str]:
 
 
 def _promised_then(
-    summary: Summary, before: Summary, name: str, promise: ToleranceBound
+    then: Statistics, studied: Statistics, name: str, promise: ToleranceBound
 ) -> list[str]:
     """Return what bounds of an element would then be, beside the same estimates as studied."""
     return [
-        _then(bound, *(_end(side.outputs.get(name), bound, p) for side in (summary, before)))
+        _then(
+            bound,
+            *(_end(side.get((name, "quantiles", repr(p))), bound) for side in (then, studied)),
+        )
         for p in promise.probabilities
         if (bound := promise.of_quantile(p)) is not None
     ]
@@ -306,11 +308,10 @@ def _then(bound: ToleranceBound, then: float, studied: float) -> str:
     return plain(printed(f"{bound.end_of_quantile} {'; as studied, '.join(ends)}."))
 
 
-def _end(described: Described | None, bound: ToleranceBound, probability: float) -> float:
+def _end(statistic: Statistic | None, bound: ToleranceBound) -> float:
     """Return the end of the interval of a quantile, with failed rows beyond it."""
-    statistic = described.find("quantiles", repr(probability)) if described else None
     if statistic is None:
-        return float("nan")
+        return nan
     estimates: list[Estimate] = [statistic.best.estimate]
     if statistic.best.failed is not None:
         estimates.append(statistic.best.failed)

@@ -53,7 +53,7 @@ def test_a_life_curve_of_many_rows_is_no_image():
         picture_of_life
         for picture_of_life in pictures(Findings(Result(asking(ds, outputs=["life"]))), "results")
     )
-    assert drawn.of.name == "life" and not drawn.is_image and len(drawn.html) < 100_000
+    assert drawn.subject == "life" and not drawn.is_image and len(drawn.html) < 100_000
 
 
 def test_a_crowded_figure_becomes_an_image():

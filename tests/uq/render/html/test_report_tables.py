@@ -232,11 +232,11 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
 
 def test_indices_are_ranked_beside_an_input_without_effect():
     ds = asking(linear(samples=200, settings={"fail_above": 0.95}), sensitivity=["rbd-fast"])
-    (method,) = sensitivity_of(Findings(Result(ds)))
+    ((used, subjects),) = sensitivity_of(Findings(Result(ds))).values()
     lost = int(ds["y"].isnull().sum())
     assert lost > 0
-    assert method.used.startswith(f"from {200 - lost} rows; {lost} groups with missing")
-    (table,) = method.subjects[0].tables
+    assert used.startswith(f"from {200 - lost} rows; {lost} groups with missing")
+    (table,) = subjects[0].tables
     names = [row[0].text for row in table.rows]
     nulls = ["(an input without effect)", "(largest of 4 such inputs)"]
     assert names == ["x4", "x3", "x2", "x1", *nulls]
@@ -245,9 +245,10 @@ def test_indices_are_ranked_beside_an_input_without_effect():
 
 
 def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
-    (method,) = sensitivity_of(Findings(Result(linear("saltelli", samples=32, replicates=4))))
-    assert method.used == "from 768 rows"
-    first, *_ = method.subjects[0].tables[0].rows
+    result = Result(linear("saltelli", samples=32, replicates=4))
+    ((used, subjects),) = sensitivity_of(Findings(result)).values()
+    assert used == "from 768 rows"
+    first, *_ = subjects[0].tables[0].rows
     low, high = map(float, first[1].more.split(" to "))
     assert low < float(first[1].text) < high
 
@@ -255,18 +256,18 @@ def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
 def test_errors_of_the_rows_stand_beside_that_of_sampling_in_one_unit():
     ds = with_output(lives(), "life_error", np.full(64, 0.5 * DAY), "lifetime")
     section = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
-    line = lines(section.table)["life"]
+    line = lines(section["table"])["life"]
     assert (line["unit"], line["error of the rows"]) == ("days", "0.5")
     assert float(line["half-width of the interval"]) == pytest.approx(1.6, abs=0.1)
-    assert section.warnings == [] and section.refused == ""
+    assert section["warnings"] == [] and section["refused"] == ""
 
 
 def test_rows_less_exact_than_their_number_are_warned_of():
     ds = with_output(linear("latin-hypercube", 16, 4), "y_error", np.ones(64))
     section = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
-    (warning,) = section.warnings
+    (warning,) = section["warnings"]
     assert warning.startswith("y: the rows' own error (1 1)")
-    assert sentence("no fewer samples") in section.refused and section.pictures == []
+    assert sentence("no fewer samples") in section["refused"] and section["pictures"] == []
 
 
 def test_numbers_of_a_kind_have_bars_on_one_scale():

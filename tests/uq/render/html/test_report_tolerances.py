@@ -11,7 +11,9 @@ from explored import cells
 from scipy_counterparts import of_scipy
 
 import uq as api
+from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
+from uq.assess.population import Population
 from uq.assess.what_if import answer, read_changes, what_if_facts
 from uq.contract import Status
 from uq.errors import RunError
@@ -218,6 +220,20 @@ def test_inputs_without_a_slider_are_named(shown):
     assert browser.value("document.querySelectorAll('.tolerance').length") == 1
     notes = browser.value("document.querySelector('#tolerances .note').innerText")
     assert "its values are listed" in notes
+
+
+def test_a_stop_estimates_no_quantile_that_the_page_does_not_show(monkeypatch):
+    findings = Findings(Result(scaled({}, samples=200)))
+    answered, searched, search = conclude(findings).quantities, [], Population.quantile
+    monkeypatch.setattr(
+        Population,
+        "quantile",
+        lambda rows, p: searched.append(rows.element.name) or search(rows, p),
+    )
+    sliders = rows_inside(findings, "a.nc", answered)["tolerances"]["sliders"]
+    stops = sum(len(track["stops"]) - 1 for slider in sliders for track in slider["tracks"])
+    assert stops >= 10 and set(searched) == {answered[0].name}
+    assert len(searched) <= stops + 1
 
 
 def promised(browser):

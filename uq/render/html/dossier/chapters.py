@@ -1,43 +1,60 @@
 """The chapters of a dossier, in the order of the outline, and as HTML."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import NamedTuple
-
 from uq.assess.findings import Findings
-from uq.render.html.dossier import assessment, results
+from uq.render.html.dossier.assessment import (
+    context,
+    information,
+    inputs,
+    models,
+    quantities,
+    software,
+)
 from uq.render.html.dossier.items import Item
-from uq.render.html.dossier.outline import DOCUMENTS, OUTLINE, Heading
+from uq.render.html.dossier.outline import DOCUMENTS, Heading
+from uq.render.html.dossier.results import (
+    conclusions,
+    convergence,
+    propagation,
+    sensitivities,
+    studies,
+    uncertainty,
+)
 from uq.render.html.layout import laid_out
 from uq.result.result import Result
 
-Source = Callable[[Findings, str], Iterator[Item]]
+_TOPICS = "RG 1.245, section C.2"
 
-CONTENTS: Mapping[str, Source] = {
-    "context": assessment.context,
-    "information": assessment.information,
-    "quantities": assessment.quantities,
-    "software": assessment.software,
-    "models": assessment.models,
-    "inputs": assessment.inputs,
-    "propagation": results.propagation,
-    "convergence": results.convergence,
-    "sensitivities": results.sensitivities,
-    "uncertainty": results.uncertainty,
-    "studies": results.studies,
-    "conclusions": results.conclusions,
-}
-"""Name of a heading -> what a result provides under it."""
+OUTLINE = (
+    Heading(context, "Context", (_TOPICS,)),
+    Heading(information, "Information made available", (_TOPICS,)),
+    Heading(
+        quantities,
+        "Quantities of interest and acceptance criteria",
+        (_TOPICS, "JCGM 101, 5.1"),
+    ),
+    Heading(
+        software,
+        "Software quality assurance, verification and validation",
+        (_TOPICS,),
+    ),
+    Heading(models, "Models", (_TOPICS, "JCGM 101, 5.1")),
+    Heading(inputs, "Inputs and their uncertainty", (_TOPICS, "JCGM 101, 6")),
+    Heading(propagation, "Propagation of uncertainty", (_TOPICS, "JCGM 101, 7.2 to 7.4")),
+    Heading(convergence, "Convergence", (_TOPICS, "JCGM 101, 7.9")),
+    Heading(sensitivities, "Sensitivity analyses", (_TOPICS,)),
+    Heading(
+        uncertainty,
+        "Uncertainty of the quantities of interest",
+        (_TOPICS, "JCGM 101, 5.5"),
+    ),
+    Heading(studies, "Sensitivity studies", (_TOPICS,)),
+    Heading(conclusions, "Conclusions", ("NUREG/CR-7278",)),
+)
+"""In the order of RG 1.245; the wording is ours."""
 
 
-class Chapter(NamedTuple):
-    """A heading and what is expected under it, provided or not."""
-
-    heading: Heading
-    items: list[Item]
-
-
-def chapters(result: Result, file: str) -> list[Chapter]:
-    """Return what a result provides, in the order of the outline.
+def chapters(result: Result, file: str) -> dict[Heading, list[Item]]:
+    """Return what is expected under each heading, provided or not, in the order of the outline.
 
     Parameters
     ----------
@@ -45,13 +62,9 @@ def chapters(result: Result, file: str) -> list[Chapter]:
         A result.
     file : str
         The name of its file.
-
-    Returns
-    -------
-    list of Chapter
     """
     findings = Findings(result)
-    return [Chapter(title, list(CONTENTS[title.name](findings, file))) for title in OUTLINE]
+    return {heading: list(heading.source(findings, file)) for heading in OUTLINE}
 
 
 def dossier(result: Result, name: str) -> str:

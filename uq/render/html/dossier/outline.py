@@ -8,7 +8,11 @@ have not been compared word for word, their finer numbers are not given, and a d
 guide (DG-1422, February 2024) is not followed. Check the guide before a submittal relies on it.
 """
 
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
+
+from uq.assess.findings import Findings
+from uq.render.html.dossier.items import Item
 
 
 class Heading(NamedTuple):
@@ -16,16 +20,21 @@ class Heading(NamedTuple):
 
     Attributes
     ----------
-    name : str
-        Its place in a page.
+    source : callable
+        Findings, name of the file -> the items under it; its name is the heading's in a page.
     title : str
     after : tuple of str
         What it follows; the first word or two name one of `DOCUMENTS`.
     """
 
-    name: str
+    source: Callable[[Findings, str], Iterator[Item]]
     title: str
     after: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Its place in a page."""
+        return self.source.__name__
 
 
 DOCUMENTS = {
@@ -40,37 +49,3 @@ DOCUMENTS = {
     " distributions using a Monte Carlo method, JCGM 101:2008.",
 }
 """Short name -> document. RG 1.245 says what a submittal contains, NUREG/CR-7278 why."""
-
-_CONTENTS = "RG 1.245, section C.2"
-
-OUTLINE = (
-    Heading("context", "Context", (_CONTENTS,)),
-    Heading("information", "Information made available", (_CONTENTS,)),
-    Heading(
-        "quantities",
-        "Quantities of interest and acceptance criteria",
-        (_CONTENTS, "JCGM 101, 5.1"),
-    ),
-    Heading(
-        "software",
-        "Software quality assurance, verification and validation",
-        (_CONTENTS,),
-    ),
-    Heading("models", "Models", (_CONTENTS, "JCGM 101, 5.1")),
-    Heading("inputs", "Inputs and their uncertainty", (_CONTENTS, "JCGM 101, 6")),
-    Heading(
-        "propagation",
-        "Propagation of uncertainty",
-        (_CONTENTS, "JCGM 101, 7.2 to 7.4"),
-    ),
-    Heading("convergence", "Convergence", (_CONTENTS, "JCGM 101, 7.9")),
-    Heading("sensitivities", "Sensitivity analyses", (_CONTENTS,)),
-    Heading(
-        "uncertainty",
-        "Uncertainty of the quantities of interest",
-        (_CONTENTS, "JCGM 101, 5.5"),
-    ),
-    Heading("studies", "Sensitivity studies", (_CONTENTS,)),
-    Heading("conclusions", "Conclusions", ("NUREG/CR-7278",)),
-)
-"""In the order of RG 1.245; the wording is ours."""

@@ -16,7 +16,7 @@ from uq.render.html.cells import Cell, HtmlTable
 from uq.render.html.convergence import convergence_of
 from uq.render.html.dossier.items import Item
 from uq.render.html.fleets import fleet_notes, fleet_table
-from uq.render.html.indices import of_output, output_of, sensitivity_of
+from uq.render.html.indices import of_output, sensitivity_of
 from uq.render.html.levels import levels_of
 from uq.render.html.outcomes import (
     category_table,
@@ -25,7 +25,7 @@ from uq.render.html.outcomes import (
     result_tables,
     status_table,
 )
-from uq.render.html.pictures import pictures
+from uq.render.html.pictures import about, pictures
 from uq.render.trace.citations import cited
 from uq.result.nesting import size_in_words
 from uq.sampling.designs import DESIGNS
@@ -67,14 +67,15 @@ def convergence(findings: Findings, file: str) -> Iterator[Item]:
     """Yield whether the rows are enough."""
     estimates = convergence_of(findings, outcomes(findings.result, findings.summary))
     yield Item("Verdict", text=verdict(findings))
-    refused = [estimates.refused] if estimates.refused else []
-    notes = [*estimates.warnings, *refused]
+    refused = list(filter(None, [estimates["refused"]]))
     yield Item(
         "Sampling error, and numerical error of the rows",
-        tables=[estimates.table] if estimates.table else [],
-        notes=notes,
+        tables=list(filter(None, [estimates["table"]])),
+        notes=estimates["warnings"] + refused,
     )
-    yield Item("Estimates against the number of rows", pictures=estimates.pictures, notes=refused)
+    yield Item(
+        "Estimates against the number of rows", pictures=estimates["pictures"], notes=refused
+    )
 
 
 def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
@@ -83,13 +84,13 @@ def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
     yield Item(
         "Methods",
         facts=[
-            (method.name, f"{METHODS[method.name].question}; {method.refused or method.used}")
-            for method in methods
+            (method, f"{METHODS[method].question}; {used}") for method, (used, _) in methods.items()
         ],
         notes=[] if methods else ["The design of this study supports no sensitivity method."],
     )
-    subjects = [subject for method in methods for subject in method.subjects]
-    for name in dict.fromkeys(table.output for table in subjects):
+    for name in dict.fromkeys(
+        table.output for _, subjects in methods.values() for table in subjects
+    ):
         yield Item(f"Indices of {name}", subjects=of_output(methods, name))
 
 
@@ -112,27 +113,25 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
             tables=list(
                 result_tables([outcome for outcome in described if outcome.output == name])
             ),
-            pictures=[
-                figure for figure in drawn if name in (figure.of.name, output_of(figure.of.name))
-            ],
+            pictures=about(drawn, name),
         )
     for name, shares in findings.summary.categories.items():
         yield Item(f"Statistics of {name}", tables=[category_table(name, shares)])
     if findings.summary.notes:
         yield Item("What the rows cannot show", text=findings.summary.notes)
     if findings.summary.regimes:
-        about = [figure for figure in drawn if output_of(figure.of.name) == REGIME]
+        of_regimes = [figure for figure in drawn if figure.output == REGIME]
         yield Item(
             "Regimes",
             tables=regime_tables(findings),
-            pictures=[*about, *pictures(findings, "rows")],
+            pictures=[*of_regimes, *pictures(findings, "rows")],
         )
     yield Item("Estimators and their sources", tables=_estimators(findings))
     levels, fleets = levels_of(findings), fleet_table(findings)
     yield Item(
         "What is shared, own, or due to chance",
-        tables=[*([levels.table] if levels else []), *([fleets] if fleets else [])],
-        notes=levels.notes + fleet_notes(findings) if levels else ["Each sample has one row."],
+        tables=[table for table in (levels and levels["table"], fleets) if table],
+        notes=levels["notes"] + fleet_notes(findings) if levels else ["Each sample has one row."],
     )
 
 
