@@ -121,11 +121,11 @@ def rare_event(
     without a hit, 4.6e-4.
 
     Both methods can miss a part of the event, subset simulation one behind a jump of the output.
-    As many rows as a level has are therefore drawn wide (`uq.explore.wide_search`). If their
-    interval lies above that of the method, it is shown instead; if only their estimate does, and
-    enough of them lie within the event, the high end is theirs, and a note says so. If replicates
-    of subset simulation scatter more than their chains explain, the high end is what the plain rows
-    support, and the low end lies about their geometric mean.
+    As many rows as a level has are therefore drawn wide (`uq.explore.wide_search`).
+    If their interval lies above that of the method, it is shown instead; if only their estimate
+    does, and enough of them lie within the event, the high end is theirs, and a note says so. If
+    replicates of subset simulation scatter more than their chains explain, the high end is what the
+    plain rows support, and the low end lies about their geometric mean.
 
     Examples
     --------

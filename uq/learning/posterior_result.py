@@ -87,7 +87,8 @@ def as_result(
         (inspected, sample, score): that law. ``learnt_law_pulls``, ``learnt_law_follows``
         (sample, term), ``unit_law_pulls`` (inspected, sample, term), ``learnt_law_scores``
         (score,): what the rows say together of one that all units share
-        (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a digest of each.
+        (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a digest of
+        each.
     """
     if taken := [name for name in _WEIGHTS if name in rows.dataset.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
