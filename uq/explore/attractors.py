@@ -7,7 +7,6 @@ is one attractor.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,30 +17,18 @@ STANDARD_ERRORS = 4.0
 """Of the difference between two values: a smaller difference is no gap."""
 
 
-class AttractorNumber(NamedTuple):
-    """One number of every row.
-
-    Attributes
-    ----------
-    values : ndarray, shape (n,)
-        NaN agrees with NaN, infinity with infinity.
-    errors : ndarray, shape (n,)
-        Their standard errors, 0 where there are none.
-    tolerance : float
-        Relative to the largest finite magnitude among the values; 0: equal or not.
-    """
-
-    values: Floats
-    errors: Floats
-    tolerance: float
+Compared = tuple[Floats, Floats, float]
+"""Values of every row, shape (n,), of which NaN agrees with NaN and infinity with infinity; their
+standard errors, 0 where there are none; and the tolerance, relative to the largest finite magnitude
+among the values; 0: equal or not."""
 
 
-def attractors(compared: Sequence[AttractorNumber], rows: int) -> NDArray[np.int32]:
+def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
     """Return the number of the attractor of each row, the most frequent first.
 
     Parameters
     ----------
-    compared : sequence of AttractorNumber
+    compared : sequence of Compared
     rows : int
 
     Returns
@@ -51,8 +38,8 @@ def attractors(compared: Sequence[AttractorNumber], rows: int) -> NDArray[np.int
     """
     labels, count = np.zeros(rows, np.int64), 0
     while count < (count := len(np.unique(labels))):
-        for number in compared:
-            labels = _parted(labels, number)
+        for values, errors, tolerance in compared:
+            labels = _parted(labels, values, errors, tolerance)
     _, first, place, frequency = np.unique(
         labels, return_index=True, return_inverse=True, return_counts=True
     )
@@ -61,13 +48,15 @@ def attractors(compared: Sequence[AttractorNumber], rows: int) -> NDArray[np.int
     return rank[place]
 
 
-def _parted(labels: NDArray[np.int64], number: AttractorNumber) -> NDArray[np.int64]:
+def _parted(
+    labels: NDArray[np.int64], values: Floats, errors: Floats, tolerance: float
+) -> NDArray[np.int64]:
     """Split each group of rows at the gaps of one output."""
-    size = np.abs(number.values[np.isfinite(number.values)]).max(initial=0.0)
-    order = np.lexsort((number.values, labels))
-    values, errors, groups = number.values[order], number.errors[order], labels[order]
+    size = np.abs(values[np.isfinite(values)]).max(initial=0.0)
+    order = np.lexsort((values, labels))
+    values, errors, groups = values[order], errors[order], labels[order]
     lower, upper = values[:-1], values[1:]
-    slack = number.tolerance * size + STANDARD_ERRORS * np.hypot(errors[:-1], errors[1:])
+    slack = tolerance * size + STANDARD_ERRORS * np.hypot(errors[:-1], errors[1:])
     with np.errstate(invalid="ignore"):
         alike = (lower == upper) | (upper - lower <= slack) | (np.isnan(lower) & np.isnan(upper))
     new = np.concatenate([[False], ~alike | (groups[:-1] != groups[1:])])[: len(labels)]

@@ -15,7 +15,7 @@ from uq.contract import Model
 from uq.errors import InputError
 from uq.execution import runner, tally
 from uq.execution.options import RunOptions
-from uq.explore.attractors import STANDARD_ERRORS, AttractorNumber, attractors
+from uq.explore.attractors import STANDARD_ERRORS, Compared, attractors
 from uq.explore.grid import Axis, ParameterGrid, grid_of
 from uq.files import whole_files
 from uq.files.netcdf_files import refuse_tricks
@@ -88,7 +88,15 @@ def basins(
             f"model '{grid.model.name}' is not installed, and workers would not find it: "
             "give it as 'package.module:ATTRIBUTE'"
         )
-    choices = json.dumps([grid.choices, compared, float(tolerance)])
+    model_choices = grid.model.choices_of(grid.settings)
+    rows = [
+        grid.model.name,
+        grid.model.version,
+        [*grid.axes.items()],
+        grid.constants,
+        model_choices,
+    ]
+    choices = json.dumps([rows, compared, float(tolerance)])
     identity = hashlib.sha256(choices.encode()).hexdigest()
     finish = partial(_finish, grid, compared, float(tolerance), identity)
     workload = Workload(
@@ -163,7 +171,7 @@ def _finish(
     return ds
 
 
-def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterator[AttractorNumber]:
+def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterator[Compared]:
     """Yield the numbers to be compared, element by element."""
     declared = outputs_of(flat)
     for name in names:
@@ -174,7 +182,7 @@ def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterat
         slack = 0.0 if declared[name].is_category else tolerance
         columns = (np.reshape(a.values, (len(a), -1)).T for a in (values, errors))
         for value, error in zip(*columns, strict=True):
-            yield AttractorNumber(value, np.nan_to_num(error, posinf=0.0), slack)
+            yield value, np.nan_to_num(error, posinf=0.0), slack
 
 
 def _folded(flat: xr.Dataset, grid: ParameterGrid) -> xr.Dataset:

@@ -1,16 +1,11 @@
-"""A study whose rows are given as normal scores of its inputs, and its result."""
+"""A study whose rows are given as normal scores of its inputs."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from scipy import special
 
 from uq.contract import Floats
-from uq.execution.options import RunOptions
-from uq.execution.runner import carry_out, run_study
-from uq.result.workload import workload_of
 from uq.study.definition import Study, study_from_text
 from uq.study.row_sampling import physical
 from uq.text.literals import read_toml, toml
@@ -53,13 +48,6 @@ def with_given_rows(study: Study, scores: Floats, name: str, seed: int) -> Study
     tables["data"] = tables.get("data", {}) | {_FILE: listed}
     text = "\n".join(f"{table} = {toml(entries)}" for table, entries in tables.items())
     return study_from_text(text, name, study.model_reference)
-
-
-def computed(study: Study, path: Path | None, options: RunOptions) -> xr.Dataset:
-    """Return the result of a study, which is kept in a file if there is a path."""
-    if path is None:
-        return carry_out(workload_of(study), options)
-    return run_study(study, path, options)
 
 
 def _within(values: Floats) -> dict[str, Any]:

@@ -51,18 +51,6 @@ class ParameterGrid:
         """Number of points."""
         return prod(self.shape)
 
-    @property
-    def choices(self) -> list[Any]:
-        """Everything that determines the rows, for JSON."""
-        axes, model = list(self.axes.items()), self.model
-        return [
-            model.name,
-            model.version,
-            axes,
-            self.constants,
-            self.model.choices_of(self.settings),
-        ]
-
     def values(self, name: str) -> Floats:
         """Return the values along an axis."""
         return np.linspace(*self.axes[name])

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,15 +14,19 @@ from uq.contract import Floats
 from uq.errors import InputError, RunError, choices
 from uq.execution.options import RunOptions
 from uq.execution.recomputed_row import study_here
-from uq.explore.given_rows import computed, with_given_rows
+from uq.execution.runner import carry_out, run_study
+from uq.explore.given_rows import with_given_rows
+from uq.learning.evidence import on_wide_grids
 from uq.learning.importance import repetitions_of, with_rounds
 from uq.learning.inspections import Inspection
-from uq.learning.posterior import Posterior, on_wide_grids, posterior, shared_inputs
+from uq.learning.integrated_input import shared_inputs
+from uq.learning.posterior import Posterior, posterior
 from uq.learning.posterior_result import digest
 from uq.learning.repetition import Repetition
 from uq.learning.trust import censoring, distrust
 from uq.result.result import Result
 from uq.result.weights import IMPORTANCE, ROUND
+from uq.result.workload import workload_of
 from uq.sampling.designs import DESIGNS
 from uq.study.definition import Study
 from uq.study.row_sampling import unit_block
@@ -57,29 +60,13 @@ class Budget:
     model: str | None
 
 
-class Enlarged(NamedTuple):
-    """The rows of a result with new ones.
-
-    Attributes
-    ----------
-    rows : xarray.Dataset
-    updated : Posterior
-    kept : list of Path
-        Files of the new rows, no longer needed once the posterior is written.
-    """
-
-    rows: Result
-    updated: Posterior
-    kept: list[Path]
-
-
 def enlarged(
     study_rows: Result,
     updated: Posterior,
     inspections: Sequence[Inspection],
     model_cv: float,
     budget: Budget,
-) -> Enlarged:
+) -> tuple[Result, Posterior, list[Path]]:
     """Draw new rows, in rounds, until they represent what the inspections leave.
 
     Parameters
@@ -94,7 +81,11 @@ def enlarged(
 
     Returns
     -------
-    Enlarged
+    rows : Result
+        With the new ones.
+    updated : Posterior
+    kept : list of Path
+        Files of the new rows, no longer needed once the posterior is written.
 
     Raises
     ------
@@ -120,40 +111,42 @@ def enlarged(
     .. [1] J.-M. Cornuet, J.-M. Marin, A. Mira, C. P. Robert, "Adaptive multiple importance
        sampling", Scand. J. Stat. 39, 798-812 (2012).
     """
-    study = _study_of(study_rows, updated, budget.model)
-    n, repetition_of = len(study_rows), repetitions_of(study_rows)
-    count = len(np.unique(repetition_of))
-    step = count * study_rows.nesting.units
-    round_size = -(-max(n // _SHARE, _FEWEST) // step) * step
-    if budget.rows < round_size:
-        raise InputError(f"rows = {budget.rows}: a round of new rows takes {round_size}")
-    scores = special.ndtri(unit_block(study, 0, n))
-    rounds = _Rounds(study, study_rows, inspections, model_cv, budget, round_size)
-    seeking = [Repetition(scores[repetition_of == r], round_size // count) for r in range(count)]
+    rounds = _Rounds(study_rows, updated, inspections, model_cv, budget)
+    seeking = rounds.repetitions
     settled = rounds.settled(seeking, *rounds.until_enough(seeking, study_rows, updated))
-    return Enlarged(*rounds.until_enough(settled, study_rows, updated), rounds.kept)
+    return *rounds.until_enough(settled, study_rows, updated), rounds.kept
 
 
 class _Rounds:
-    """Rounds of new rows of a study, within a budget."""
+    """Rounds of new rows of a study, within a budget.
+
+    Attributes
+    ----------
+    repetitions : list of Repetition
+        That begin with the rows of the study.
+    kept : list of Path
+        Files of the rounds so far.
+    """
 
     def __init__(
         self,
-        study: Study,
         study_rows: Result,
+        updated: Posterior,
         inspections: Sequence[Inspection],
         model_cv: float,
         budget: Budget,
-        round_size: int,
     ):
-        self._study, self._study_rows, self._budget, self._each = (
-            study,
-            study_rows,
-            budget,
-            round_size,
-        )
-        self._inspections, self._cv = inspections, model_cv
-        self._name = _digest(study_rows, inspections, model_cv)
+        self._study = _study_of(study_rows, updated, budget.model)
+        n, repetition_of = len(study_rows), repetitions_of(study_rows)
+        count = len(np.unique(repetition_of))
+        step = count * study_rows.nesting.units
+        self._each = -(-max(n // _SHARE, _FEWEST) // step) * step
+        if budget.rows < self._each:
+            raise InputError(f"rows = {budget.rows}: a round of new rows takes {self._each}")
+        scores, part = special.ndtri(unit_block(self._study, 0, n)), self._each // count
+        self.repetitions = [Repetition(scores[repetition_of == r], part) for r in range(count)]
+        self._study_rows, self._inspections, self._cv = study_rows, inspections, model_cv
+        self._budget, self._name = budget, _digest(study_rows, inspections, model_cv)
         self._number = 0
         self.kept: list[Path] = []
 
@@ -166,13 +159,17 @@ class _Rounds:
             if (self._number + 1) * self._each > self._budget.rows:
                 if not why:
                     break
-                raise RunError(f"after {self._number * self._each} new rows: {_short(rounds, why)}")
-            rounds.append(self._computed(self._drawn(repetitions, updated, repetition_of)))
-            count = len(repetitions)
-            repetition_of = np.append(
-                repetition_of,
-                np.repeat(np.arange(count, dtype=repetition_of.dtype), self._each // count),
-            )
+                why = why if rounds else "all were needed to find where to draw; allow more"
+                raise RunError(f"after {self._number * self._each} new rows: {why}")
+            columns, count = _columns(self._study, updated), len(repetitions)
+            log_likelihoods = _log_likelihoods(updated, repetition_of, count)
+            scores = [
+                repetition.drawn(log_likelihoods[r], columns, self._rng(r))
+                for r, repetition in enumerate(repetitions)
+            ]
+            rounds.append(self._computed(np.concatenate(scores)))
+            new = np.repeat(np.arange(count, dtype=repetition_of.dtype), self._each // count)
+            repetition_of = np.append(repetition_of, new)
             log_importance = np.empty(len(repetition_of))
             for r, repetition in enumerate(repetitions):
                 log_importance[repetition_of == r] = repetition.log_importance
@@ -187,50 +184,24 @@ class _Rounds:
         self, repetitions: Sequence[Repetition], rows: Result, updated: Posterior
     ) -> list[Repetition]:
         """Return repetitions that draw around the rows of these, and drop them."""
-        repetition_of, likelihoods = rows.dataset["replicate"].values, _log_likelihoods(updated)
-        likelihoods_by_repetition = [
-            [log[repetition_of == r] for log in likelihoods] for r in range(len(repetitions))
-        ]
-        return Repetition.settled(
-            repetitions,
-            likelihoods_by_repetition,
-            _columns(self._study, updated),
-            self._rng(len(repetitions)),
-        )
-
-    def _drawn(
-        self,
-        repetitions: Sequence[Repetition],
-        updated: Posterior,
-        repetition_of: NDArray[np.integer],
-    ) -> list[Floats]:
-        """Return the part of a round that each repetition draws."""
-        likelihoods, columns = _log_likelihoods(updated), _columns(self._study, updated)
-        return [
-            repetition.drawn(
-                [log[repetition_of == r] for log in likelihoods], columns, self._rng(r)
-            )
-            for r, repetition in enumerate(repetitions)
-        ]
+        columns, count = _columns(self._study, updated), len(repetitions)
+        log_likelihoods = _log_likelihoods(updated, rows.dataset["replicate"].values, count)
+        return Repetition.settled(repetitions, log_likelihoods, columns, self._rng(count))
 
     def _rng(self, part: int) -> np.random.Generator:
         return np.random.default_rng((self._study.design.seed, _SEED, self._number, part))
 
-    def _computed(self, scores: Sequence[Floats]) -> xr.Dataset:
+    def _computed(self, scores: Floats) -> xr.Dataset:
         """Return the next round, kept beside the result until that is complete."""
         self._number += 1
         number, output = self._number, self._budget.output
         path = output and output.with_name(f"{output.stem}-{self._name}-round-{number}.nc")
         seed = np.random.SeedSequence((self._study.design.seed, _SEED, number)).generate_state(1)
-        given = with_given_rows(
-            self._study, np.concatenate(scores), f"round {number}", int(seed[0])
-        )
-        self.kept += [path] if path else []
-        return computed(given, path, self._budget.options)
-
-
-def _short(rounds: Sequence[xr.Dataset], why: str) -> str:
-    return why if rounds else "all were needed to find where to draw; allow more"
+        given = with_given_rows(self._study, scores, f"round {number}", int(seed[0]))
+        if path is None:
+            return carry_out(workload_of(given), self._budget.options)
+        self.kept.append(path)
+        return run_study(given, path, self._budget.options)
 
 
 def why_no_new_rows(study_rows: Result, updated: Posterior) -> str:
@@ -274,17 +245,23 @@ def _columns(study: Study, updated: Posterior) -> NDArray[np.intp]:
     return np.array([i for i, name in enumerate(names) if name != integrated], dtype=np.intp)
 
 
-def _log_likelihoods(updated: Posterior) -> list[Floats]:
-    """Return the likelihood of each row as each inspected unit, given all other inspections."""
-    grids, evidence = on_wide_grids(updated)
-    likelihoods = []
-    for unit, (grid, rest) in enumerate(zip(grids, evidence.rest, strict=True)):
-        block = updated.likelihoods.blocks[unit]
-        joint = rest[updated.world[block]] + updated.likelihoods.log_likelihood(unit, grid.values)
-        counted, log_before = special.logsumexp(joint, axis=1), updated.likelihoods.log_before(unit)
+def _log_likelihoods(
+    updated: Posterior, repetition_of: NDArray[np.integer], count: int
+) -> list[list[Floats]]:
+    """Return of each repetition the log likelihood of its rows as each inspected unit.
+
+    Given all other inspections.
+    """
+    of_units = updated.likelihoods
+    evidence, log_likelihoods = on_wide_grids(updated.evidence, of_units), []
+    for unit, (grid, rest) in enumerate(zip(evidence.grids, evidence.rest, strict=True)):
+        joint = rest[of_units.world[of_units.blocks[unit]]]
+        joint = joint + of_units.log_likelihood(unit, grid.values)
+        counted, log_before = special.logsumexp(joint, axis=1), of_units.log_before(unit)
         finite = np.isfinite(log_before)
-        likelihoods.append(np.where(finite, counted - np.where(finite, log_before, 0.0), -np.inf))
-    return likelihoods
+        counted = counted - np.where(finite, log_before, 0.0)
+        log_likelihoods.append(np.where(finite, counted, -np.inf))
+    return [[log[repetition_of == r] for log in log_likelihoods] for r in range(count)]
 
 
 def _digest(study_rows: Result, inspections: Sequence[Inspection], model_cv: float) -> str:

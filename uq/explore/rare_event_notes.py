@@ -8,19 +8,11 @@ from uq.explore.subset_simulation import LEVEL_SHARE, SMALLEST
 from uq.explore.wide_search import is_above
 from uq.text.numbers import counted
 
-
-def _where_it_ended(ds: xr.Dataset) -> str:
-    """Say why replicates of subset simulation ended before the event."""
-    causes = {
-        "plateau": "ended on a plateau, where no row lies above the others",
-        "smallest": f"ended at levels below {SMALLEST:g}: the threshold may be out of reach",
-    }
-    ended = ds["ended"].values.tolist() if "ended" in ds else []
-    return "".join(
-        f"; {ended.count(cause)} of {len(ended)} replicates {words}"
-        for cause, words in causes.items()
-        if cause in ended
-    )
+_ENDS = {
+    "plateau": "ended on a plateau, where no row lies above the others",
+    "smallest": f"ended at levels below {SMALLEST:g}: the threshold may be out of reach",
+}
+"""Why replicates of subset simulation ended before the event."""
 
 
 def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
@@ -75,8 +67,14 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
             if lost == count
             else f"{lost} of {count} replicates did not reach the threshold"
         )
+        ended = ds["ended"].values.tolist() if "ended" in ds else []
+        ends = "".join(
+            f"; {ended.count(cause)} of {count} replicates {words}"
+            for cause, words in _ENDS.items()
+            if cause in ended
+        )
         notes.append(
-            f"{seen}: the rows only support a probability below {most:.2g}{_where_it_ended(ds)};"
+            f"{seen}: the rows only support a probability below {most:.2g}{ends};"
             " more samples support a lower one"
         )
     elif ds.attrs["method"] == "subset" and ds["probability"] > LEVEL_SHARE:

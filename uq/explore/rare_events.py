@@ -15,11 +15,7 @@ from uq.execution.options import RunOptions
 from uq.explore.design_points import design_points, drawn_around
 from uq.explore.limit_state import LimitState, evaluator_of
 from uq.explore.rare_event_notes import caveats
-from uq.explore.subset_simulation import (
-    disagreement,
-    subset_interval,
-    subset_simulation,
-)
+from uq.explore.subset_simulation import disagreement, subset_interval, subset_simulation
 from uq.explore.wide_search import WideSearch, is_above, wide_search
 from uq.stats.intervals import Ends, binomial_interval, log_scatter_interval
 from uq.study.definition import Study
@@ -27,8 +23,6 @@ from uq.study.definition import Study
 _FEWEST = 100  # rows of a level: 10 chains
 REACHED = "of the part that the method reaches"
 """Whose probability an interval holds, unless plain rows or rows drawn wide give it."""
-
-_Generators = list[np.random.Generator]
 
 
 class _Outcome(NamedTuple):
@@ -127,11 +121,11 @@ def rare_event(
     without a hit, 4.6e-4.
 
     Both methods can miss a part of the event, subset simulation one behind a jump of the output.
-    As many rows as a level has are therefore drawn wide (`uq.explore.wide_search`). If their
-    interval lies above that of the method, it is shown instead; if only their estimate does, and
-    enough of them lie within the event, the high end is theirs, and a note says so. If replicates
-    of subset simulation scatter more than their chains explain, the high end is what the plain rows
-    support, and the low end lies about their geometric mean.
+    As many rows as a level has are therefore drawn wide (`uq.explore.wide_search`).
+    If their interval lies above that of the method, it is shown instead; if only their estimate
+    does, and enough of them lie within the event, the high end is theirs, and a note says so. If
+    replicates of subset simulation scatter more than their chains explain, the high end is what the
+    plain rows support, and the low end lies about their geometric mean.
 
     Examples
     --------
@@ -150,14 +144,25 @@ def rare_event(
     options = RunOptions(workers, scheduler)
     with evaluator_of(study, output.partition("[")[0], options) as evaluator:
         margin = LimitState(study, output, threshold, below, evaluator)
-        outcome = ESTIMATORS[method](margin, samples, _generators(study, 1, replicates))
+        generators = np.random.default_rng((study.design.seed, 1)).spawn(replicates)
+        outcome = ESTIMATORS[method](margin, samples, generators)
         wide, lost = None, 0
         if outcome.plain:
             apart = LimitState(study, output, threshold, below, evaluator, first=margin.rows)
-            drawn = _generators(study, 2, replicates)
-            wide = wide_search(apart, margin.dimension, samples, drawn)
+            generators = np.random.default_rng((study.design.seed, 2)).spawn(replicates)
+            wide = wide_search(apart, margin.dimension, samples, generators)
             lost = apart.failed
-    by_wide = wide is not None and _is_missed(outcome, wide)
+    by_wide, unseen = wide is not None and _is_missed(outcome, wide), {}
+    if wide is not None:
+        unseen = {
+            "hidden_high": ((), wide.hidden_high(outcome.plain)),
+            "wide": ((), wide.probability),
+            "wide_low": ((), wide.interval[0]),
+            "wide_high": ((), wide.interval[1]),
+            "wide_hits": ((), len(wide.weights)),
+            "wide_rows": ((), samples * replicates),
+            "wide_failed": ((), lost),
+        }
     probability, (low, high) = estimate_of(outcome, wide)
     ds = xr.Dataset(
         {
@@ -165,7 +170,7 @@ def rare_event(
             "low": ((), low),
             "high": ((), high),
             "failed_high": ((), max(outcome.failed_high, high) if margin.failed else np.nan),
-            **_unseen(outcome, wide, samples * replicates, lost),
+            **unseen,
             "rows": ((), margin.rows),
             "failed": ((), margin.failed),
             "undefined": ((), margin.undefined),
@@ -187,10 +192,6 @@ def rare_event(
         },
     )
     return ds.assign_attrs(notes="\n".join(caveats(ds, margin, outcome.disagreement)))
-
-
-def _generators(study: Study, stream: int, count: int) -> _Generators:
-    return np.random.default_rng((study.design.seed, stream)).spawn(count)
 
 
 def estimate_of(outcome: _Outcome, wide: WideSearch | None) -> tuple[float, tuple[float, float]]:
@@ -230,23 +231,7 @@ def _is_missed(outcome: _Outcome, wide: WideSearch) -> bool:
     return wide.interval[0] > outcome.interval[1] or (wide.is_enough and not reached)
 
 
-def _unseen(outcome: _Outcome, wide: WideSearch | None, rows: int, failed: int) -> dict[str, Any]:
-    """Return variables on what the method cannot see."""
-    if wide is None:
-        return {}
-    low, high = wide.interval
-    return {
-        "hidden_high": ((), wide.hidden_high(outcome.plain)),
-        "wide": ((), wide.probability),
-        "wide_low": ((), low),
-        "wide_high": ((), high),
-        "wide_hits": ((), len(wide.weights)),
-        "wide_rows": ((), rows),
-        "wide_failed": ((), failed),
-    }
-
-
-def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Outcome:
+def _subset(margin: LimitState, samples: int, generators: list[np.random.Generator]) -> _Outcome:
     failed = []
 
     def counting(u: Floats) -> Floats:
@@ -273,7 +258,9 @@ def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Outco
     return _Outcome(estimates, interval, supported, failed_high, plain, scatter, variables)
 
 
-def _importance(margin: LimitState, samples: int, generators: _Generators) -> _Outcome:
+def _importance(
+    margin: LimitState, samples: int, generators: list[np.random.Generator]
+) -> _Outcome:
     u = generators[0].standard_normal((samples, margin.dimension))
     first = margin(u)
     hits, failed = int((first > 0).sum()), margin.failed

@@ -28,7 +28,7 @@ _FIRST_STEP = 0.6
 _CORRELATION = 3.0  # of the rows of a level: their number over that of independent ones, less 1
 
 
-class Found(NamedTuple):
+class SubsetReplicate(NamedTuple):
     """The outcome of one replicate.
 
     Attributes
@@ -57,7 +57,7 @@ class Found(NamedTuple):
 
 def subset_simulation(
     margin: Margin, d: int, samples: int, generators: list[np.random.Generator]
-) -> list[Found]:
+) -> list[SubsetReplicate]:
     """Estimate the probability that the margin is positive, once per generator.
 
     Parameters
@@ -73,7 +73,7 @@ def subset_simulation(
 
     Returns
     -------
-    list of Found
+    list of SubsetReplicate
         One per replicate, independent of each other.
 
     Notes
@@ -95,7 +95,7 @@ def subset_simulation(
     """
     walks = [_walk(d, samples, rng) for rng in generators]
     asked = {number: next(walk) for number, walk in enumerate(walks)}
-    outcomes: dict[int, Found] = {}
+    outcomes: dict[int, SubsetReplicate] = {}
     while asked:
         margins = margin(np.concatenate(list(asked.values())))
         parts = np.split(margins, np.cumsum([len(u) for u in asked.values()])[:-1])
@@ -108,7 +108,9 @@ def subset_simulation(
     return [outcomes[number] for number in range(len(walks))]
 
 
-def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, Floats, Found]:
+def _walk(
+    d: int, samples: int, rng: np.random.Generator
+) -> Generator[Floats, Floats, SubsetReplicate]:
     """Yield the points of one replicate, receive their margins, return its outcome."""
     u = rng.standard_normal((samples, d))
     g = yield u
@@ -122,10 +124,10 @@ def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, F
             hits = g > 0
             ended = "event" if hits.any() else "plateau"
             within = probability * float(hits.mean())
-            return Found(within, levels, u[hits], probability, first_hits, ended)
+            return SubsetReplicate(within, levels, u[hits], probability, first_hits, ended)
         probability *= float(np.mean(g >= limit))
         if probability < SMALLEST:
-            return Found(0.0, levels, u[:0], probability, first_hits, "smallest")
+            return SubsetReplicate(0.0, levels, u[:0], probability, first_hits, "smallest")
         inside = np.flatnonzero(g >= limit)
         chosen = rng.choice(inside, top, replace=len(inside) < top)
         chain, margins = [u[chosen]], [g[chosen]]
@@ -140,12 +142,12 @@ def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, F
         levels += 1
 
 
-def disagreement(replicates: list[Found], samples: int) -> float:
+def disagreement(replicates: list[SubsetReplicate], samples: int) -> float:
     """Return the factor between the largest and smallest estimate where chains do not explain it.
 
     Parameters
     ----------
-    replicates : list of Found
+    replicates : list of SubsetReplicate
     samples : int
         Rows of each level.
 
@@ -165,12 +167,12 @@ def disagreement(replicates: list[Found], samples: int) -> float:
     return float(estimates.max() / estimates.min()) if scatter > 4 * explained else 1.0
 
 
-def subset_interval(replicates: list[Found], samples: int) -> Ends:
+def subset_interval(replicates: list[SubsetReplicate], samples: int) -> Ends:
     """Return the interval that replicates of subset simulation support.
 
     Parameters
     ----------
-    replicates : list of Found
+    replicates : list of SubsetReplicate
     samples : int
         Rows of each level.
 

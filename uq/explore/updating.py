@@ -15,9 +15,9 @@ from uq.files.whole_files import check_target, write_result
 from uq.learning.importance import own_rows
 from uq.learning.inspection_log import Given, all_of, read
 from uq.learning.inspections import MOST_CV, Inspection
-from uq.learning.observables import as_named, quantities_of
+from uq.learning.observables import as_named, observables_of
 from uq.learning.posterior import posterior
-from uq.learning.posterior_result import as_result, prior_of
+from uq.learning.posterior_result import as_result, inspections_of, prior_of
 from uq.learning.trust import censoring, distrust
 from uq.result.result import Result
 from uq.result.result_file import open_result
@@ -149,8 +149,10 @@ def learn(
         raise InputError(f"uq update: the rows of a '{opened.design_name}' design {why}")
     if output is not None and Path(output).is_file():
         _check_that_it_is_a_posterior(Path(output))
-    quantities = quantities_of(prior_of(opened))
-    inspections = all_of(opened, [as_named(quantities, inspection) for inspection in new])
+    observables = observables_of(prior_of(opened))
+    inspections = all_of(
+        inspections_of(opened), [as_named(observables, inspection) for inspection in new]
+    )
     cv = float(opened.dataset.attrs.get(MODEL_ERROR, 0.0)) if model_error is None else model_error
     if not 0 <= cv < MOST_CV:
         raise InputError(f"model error = {cv:g}: must be a coefficient of variation, such as 0.1")

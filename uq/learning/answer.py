@@ -124,12 +124,13 @@ def _alike(labels: Sequence[str]) -> Iterator[str]:
 
 def _interpolated(updated: Posterior) -> Iterator[str]:
     """Yield how well depths are known between those whose lives the result has."""
-    for look in {look.name: look for look in updated.looks.values()}.values():
-        errors = look.depths.error() if look.depths is not None else np.empty(0)
+    observables = updated.likelihoods.observables.values()
+    for observable in {observable.name: observable for observable in observables}.values():
+        errors = observable.depths.error() if observable.depths is not None else np.empty(0)
         if np.isfinite(errors).any():
             most = percent(float(np.nanquantile(errors, 0.9)))
             yield (
-                f"{look.name} at a time is interpolated; with a declared depth left out it is"
+                f"{observable.name} at a time is interpolated; with a declared depth left out it is"
                 f" wrong by up to {most} in nine of ten rows."
             )
 

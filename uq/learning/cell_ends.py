@@ -31,13 +31,8 @@ def edges_of_rows(grid: QuadratureGrid, possible: Mask, allowed: Allowed | None)
     -------
     ndarray, shape (n, g + 1)
     """
-    edges = np.broadcast_to(grid.edges, (len(possible), len(grid.edges)))
     if allowed is None or possible.all():
-        return edges
-    return _cut(grid, possible, allowed)
-
-
-def _cut(grid: QuadratureGrid, possible: Mask, allowed: Allowed) -> Floats:
+        return np.broadcast_to(grid.edges, (len(possible), len(grid.edges)))
     edges, middle = np.repeat(grid.edges[None], len(possible), axis=0), centres(grid.edges)
     feasible, last = possible.any(axis=1), possible.shape[1] - 1
     first, final = possible.argmax(axis=1), last - possible[:, ::-1].argmax(axis=1)

@@ -25,7 +25,7 @@ def masses(grid: QuadratureGrid, edges: Floats, worth: Floats) -> Floats:
     ----------
     grid : QuadratureGrid
     edges : ndarray, shape (n, g + 1)
-        Between which probabilities each cell stands in each row (`cut_cells.edges_of_rows`).
+        Between which probabilities each cell stands in each row (`cell_ends.edges_of_rows`).
     worth : ndarray, shape (n, g)
         The density at the centre of each cell of the grid, times the width of that cell.
 

@@ -1,6 +1,6 @@
 """Inspections that contradict a result, or each other, where no row agrees with all of them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -15,13 +15,7 @@ from uq.learning.unit_likelihood import UnitLikelihoods
 _WHOLE = "no row of this result agrees with"
 
 
-def contradictions(
-    likelihoods: UnitLikelihoods,
-    labels: Sequence[str],
-    grids: Sequence[QuadratureGrid],
-    world: NDArray[np.intp],
-    is_own: bool,
-) -> list[str]:
+def contradictions(likelihoods: UnitLikelihoods, grids: Sequence[QuadratureGrid]) -> list[str]:
     """Return messages that name the smallest set of inspections with which no row agrees.
 
     Single inspections, else pairs of one unit, else all of a unit, else those of two units that
@@ -30,14 +24,8 @@ def contradictions(
     Parameters
     ----------
     likelihoods : UnitLikelihoods
-    labels : sequence of str
-        Of the inspected units.
     grids : sequence of QuadratureGrid
-        Of each.
-    world : ndarray of int, shape (n,)
-        Of each row.
-    is_own : bool
-        Whether each unit has an integrated input of its own.
+        Of each inspected unit.
     """
     agree = [
         {
@@ -46,22 +34,27 @@ def contradictions(
         }
         for unit, (grid, inspections) in enumerate(zip(grids, likelihoods.inspections, strict=True))
     ]
-    for search in (_single, _pairs):
-        if messages := [line for unit in agree for line in search(unit)]:
+    for size, all_of_them in ((1, "it"), (2, "both")):
+        if messages := [
+            f"{' and '.join(map(_described, chosen))}: {_WHOLE} {all_of_them}"
+            for unit in agree
+            for chosen in combinations(unit, size)
+            if not _agreeing(unit, chosen).any()
+        ]:
             return messages
-    together = [np.logical_and.reduce(list(unit.values())) for unit in agree]
+    together = [_agreeing(unit, unit) for unit in agree]
     if messages := [
         f"unit {label}: {_WHOLE} all its inspections"
         f" ({choices([inspection.where for inspection in unit])})"
-        for label, unit, rows in zip(labels, agree, together, strict=True)
+        for label, unit, rows in zip(likelihoods.labels, agree, together, strict=True)
         if not rows.any()
     ]:
         return messages
     worlds = [
-        _worlds(rows, world[block], int(world.max()) + 1, is_own)
+        _agreeing_worlds(rows, block, likelihoods)
         for rows, block in zip(together, likelihoods.blocks, strict=True)
     ]
-    pairs = combinations(zip(labels, agree, worlds, strict=True), 2)
+    pairs = combinations(zip(likelihoods.labels, agree, worlds, strict=True), 2)
     return [
         f"units {a} and {b}: {_WHOLE} the inspections of both"
         f" ({choices([inspection.where for inspection in (*first, *second)])})"
@@ -70,24 +63,18 @@ def contradictions(
     ] or [f"{_WHOLE} the inspections"]
 
 
-def _single(agree: dict[Inspection, Mask]) -> Iterator[str]:
-    for inspection, rows in agree.items():
-        if not rows.any():
-            yield f"{_described(inspection)}: {_WHOLE} it"
-
-
-def _pairs(agree: dict[Inspection, Mask]) -> Iterator[str]:
-    for (inspection, first), (other, second) in combinations(agree.items(), 2):
-        if not (first & second).any():
-            yield f"{_described(inspection)} and {_described(other)}: {_WHOLE} both"
+def _agreeing(agree: Mapping[Inspection, Mask], chosen: Iterable[Inspection]) -> Mask:
+    """Return which rows agree with all chosen inspections of a unit, shape (rows, g)."""
+    return np.logical_and.reduce([agree[inspection] for inspection in chosen])
 
 
 def _described(inspection: Inspection) -> str:
     return f"{inspection.where} (unit {inspection.unit}, {inspection.output}, {inspection.kind})"
 
 
-def _worlds(rows: Mask, world: NDArray[np.intp], count: int, is_own: bool) -> Mask:
+def _agreeing_worlds(rows: Mask, block: NDArray[np.intp], likelihoods: UnitLikelihoods) -> Mask:
     """Return in which worlds, with which values of an input that all share, some row agrees."""
-    agreeing = np.zeros((count, rows.shape[1]), dtype=bool)
-    np.logical_or.at(agreeing, world, rows)
-    return np.asarray(agreeing.any(axis=1, keepdims=True)) if is_own else agreeing
+    agreeing = np.zeros((likelihoods.worlds, rows.shape[1]), dtype=bool)
+    np.logical_or.at(agreeing, likelihoods.world[block], rows)
+    shared = likelihoods.shares_scale
+    return agreeing if shared else np.asarray(agreeing.any(axis=1, keepdims=True))

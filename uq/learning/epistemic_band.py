@@ -6,7 +6,7 @@ from uq.assess.scaling import inputs_of
 from uq.contract import Floats
 from uq.learning.integrated_input import free_scales
 from uq.learning.posterior_inputs import quantiles
-from uq.result.element import Element
+from uq.result.elements import Element
 from uq.result.result import Result
 from uq.result.weights import INTEGRATED, WEIGHT, WORLDS
 from uq.sampling.levels import SHARED

@@ -5,8 +5,8 @@ input. Each inspected unit takes rows of its own in each world, so that the prod
 the means of their likelihoods estimates the evidence of a world without bias.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -14,12 +14,8 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.contract import Floats
-
-Likelihood = Callable[[Floats], Floats]
-"""``likelihood(values)``: logarithm of the likelihood of all inspections of a unit, of shape
-(m, g), were it each of its m rows with each of the g values of the integrated input."""
-
-Quantiles = Callable[[Floats], Floats]
+from uq.learning.integrated_input import IntegratedScale
+from uq.learning.unit_likelihood import UnitLikelihoods
 
 FINEST = 1e-9
 """Share of the posterior that the grid of the integrated input may leave out on each side."""
@@ -72,8 +68,10 @@ class Evidence:
     log_worlds : ndarray, shape (w, g)
         Logarithm of the posterior probability of each world, and of each value of an integrated
         input that all its units share (else g is 1); the sum of the probabilities is 1.
+    log_units : tuple of ndarray, shape (w, g)
+        Logarithm of the mean likelihood of each inspected unit.
     rest : tuple of ndarray, shape (w, g)
-        For each inspected unit the same without its own likelihood, not normalised.
+        For each inspected unit the posterior without its own likelihood, not normalised.
     log_evidence : float
         Logarithm of the probability of all inspections.
     grids : tuple of QuadratureGrid
@@ -83,89 +81,92 @@ class Evidence:
     """
 
     log_worlds: Floats
+    log_units: tuple[Floats, ...]
     rest: tuple[Floats, ...]
     log_evidence: float
     grids: tuple[QuadratureGrid, ...]
     nodes: float = np.inf
 
 
-def weigh(
-    likelihoods: Sequence[Likelihood],
-    world_of: Sequence[NDArray[np.intp]],
-    worlds: int,
-    quantiles: Quantiles | None,
-    is_own: bool,
-) -> Evidence:
-    """Return the evidence of the inspections, on a refined grid.
-
-    Parameters
-    ----------
-    likelihoods : sequence of callable
-        Of each inspected unit.
-    world_of : sequence of ndarray of int, shape (m,)
-        The world of each row that stands for each inspected unit.
-    worlds : int
-    quantiles : callable, optional
-        Values of the integrated input at given probabilities; None if there is none.
-    is_own : bool
-        Whether each unit has an integrated input of its own.
-
-    Returns
-    -------
-    Evidence
-    """
-    grids = [_grid(0.0, 1.0, quantiles, _NODES)] * len(likelihoods)
-    nodes = _NODES
+def weigh(likelihoods: UnitLikelihoods) -> Evidence:
+    """Return the evidence of the inspections, on grids refined until they resolve the posterior."""
+    grids, nodes = [_grid(0.0, 1.0, likelihoods.scale, _NODES)] * len(likelihoods.blocks), _NODES
     for _ in range(_PASSES):
-        units, evidence = weigh_on(grids, likelihoods, world_of, worlds, is_own)
-        if quantiles is None or not np.isfinite(evidence.log_evidence):
+        evidence = weigh_on(grids, likelihoods)
+        if likelihoods.scale is None or not np.isfinite(evidence.log_evidence):
             break
         narrower = [
-            _narrower(*arguments) for arguments in zip(grids, units, evidence.rest, strict=True)
+            _narrower(*arguments)
+            for arguments in zip(grids, evidence.log_units, evidence.rest, strict=True)
         ]
-        if not is_own:
+        if likelihoods.shares_scale:
             narrower = narrower[:1] * len(grids)
         if evidence.nodes < _MET and nodes < _MOST_NODES:
             # Values that no row has met may be possible: finer before narrower.
             narrower, nodes = [(grid.low, grid.high) for grid in grids], nodes * 2
-        elif not any(_is_much(*both) for both in zip(narrower, grids, strict=True)):
+        elif not any(_is_half(*both) for both in zip(narrower, grids, strict=True)):
             if nodes == _MOST_NODES or evidence.nodes >= _FINE:
                 break
             nodes *= 2
-        grids = [_grid(low, high, quantiles, nodes) for low, high in narrower]
+        grids = [_grid(low, high, likelihoods.scale, nodes) for low, high in narrower]
     return evidence
 
 
-def weigh_on(
-    grids: Sequence[QuadratureGrid],
-    likelihoods: Sequence[Likelihood],
-    world_of: Sequence[NDArray[np.intp]],
-    worlds: int,
-    is_own: bool,
-) -> tuple[list[Floats], Evidence]:
-    """Return the mean likelihoods of units on given grids, and their evidence; see `weigh`."""
-    units, nodes = [], []
-    for likelihood, world, grid in zip(likelihoods, world_of, grids, strict=True):
-        mean, of_world = _mean_likelihood(likelihood(grid.values), world, worlds, grid.log_share)
-        units.append(mean)
-        nodes.append(of_world)
-    evidence = (_per_unit if is_own else _shared)(units, grids, worlds)
-    if not np.isfinite(evidence.log_evidence):
-        return units, evidence
-    worth = np.exp(evidence.log_worlds)
-    share = worth.sum(axis=1)
-    if not is_own:
-        nodes.append(share**2 / np.maximum((worth**2).sum(axis=1), 1e-300))
-    fewest = [float(np.average(counts[share > 0], weights=share[share > 0])) for counts in nodes]
-    return units, replace(evidence, nodes=min(fewest))
+def on_wide_grids(evidence: Evidence, likelihoods: UnitLikelihoods) -> Evidence:
+    """Return the evidence on grids from end to end of the prior, as fine as those it has inside."""
+    grids, scale = evidence.grids, likelihoods.scale
+    if scale is not None:
+        grids = tuple(
+            _joined(
+                [
+                    np.linspace(0.0, grid.low, _NODES // 2),
+                    grid.edges,
+                    np.linspace(grid.high, 1.0, _NODES // 2),
+                ],
+                scale,
+            )
+            for grid in grids
+        )
+    return weigh_on(grids, likelihoods)
 
 
-def _grid(low: float, high: float, quantiles: Quantiles | None, nodes: int) -> QuadratureGrid:
-    if quantiles is None:
+def weigh_on(grids: Sequence[QuadratureGrid], likelihoods: UnitLikelihoods) -> Evidence:
+    """Return the evidence on given grids, one of each inspected unit."""
+    worlds, log_units, nodes = likelihoods.worlds, [], []
+    for unit, (grid, block) in enumerate(zip(grids, likelihoods.blocks, strict=True)):
+        log_rows = likelihoods.log_likelihood(unit, grid.values)
+        world = likelihoods.world[block]
+        log_mean, of_worlds = _mean_likelihood(log_rows, world, worlds, grid.log_share)
+        log_units.append(log_mean)
+        nodes.append(of_worlds)
+    if likelihoods.shares_scale:
+        log_worlds, others = _with_all_but_each(log_units, grids[0].log_share, worlds)
+        rest = [*others]
+    else:
+        integrated = [
+            special.logsumexp(log_mean + grid.log_share, axis=1, keepdims=True)
+            for log_mean, grid in zip(log_units, grids, strict=True)
+        ]
+        log_worlds, others = _with_all_but_each(integrated, np.zeros(1), worlds)
+        rest = [of_unit + grid.log_share for of_unit, grid in zip(others, grids, strict=True)]
+    total, fewest = float(special.logsumexp(log_worlds)), np.inf
+    if np.isfinite(total):
+        log_worlds = log_worlds - total
+        worth = np.exp(log_worlds)
+        share = worth.sum(axis=1)
+        if likelihoods.shares_scale:
+            nodes.append(share**2 / np.maximum((worth**2).sum(axis=1), 1e-300))
+        counts = share > 0
+        fewest = min(float(np.average(n[counts], weights=share[counts])) for n in nodes)
+    return Evidence(log_worlds, tuple(log_units), tuple(rest), total, tuple(grids), fewest)
+
+
+def _grid(low: float, high: float, scale: IntegratedScale | None, nodes: int) -> QuadratureGrid:
+    if scale is None:
         return QuadratureGrid(np.array([0.0, 1.0]), np.ones(1), np.zeros(1))
     first, last = _scores(low, high)
     scores = np.linspace(first, last, nodes + 1)[1:-1]
-    return _joined([np.linspace(low, high, nodes + 1), special.ndtr(scores)], quantiles)
+    return _joined([np.linspace(low, high, nodes + 1), special.ndtr(scores)], scale)
 
 
 def _scores(low: float, high: float) -> Floats:
@@ -173,10 +174,10 @@ def _scores(low: float, high: float) -> Floats:
     return np.asarray(special.ndtri(np.array([low, high])).clip(-_FAR, _FAR))
 
 
-def _joined(parts: Sequence[Floats], quantiles: Quantiles) -> QuadratureGrid:
+def _joined(parts: Sequence[Floats], scale: IntegratedScale) -> QuadratureGrid:
     """Return the grid whose values lie between some probabilities."""
     edges = np.unique(np.concatenate(parts))
-    return QuadratureGrid(edges, quantiles(centres(edges)), np.log(np.diff(edges)))
+    return QuadratureGrid(edges, scale.quantiles(centres(edges)), np.log(np.diff(edges)))
 
 
 def centres(edges: Floats) -> Floats:
@@ -191,53 +192,15 @@ def centres(edges: Floats) -> Floats:
     )
 
 
-def wide(grid: QuadratureGrid, quantiles: Quantiles | None) -> QuadratureGrid:
-    """Return a grid from end to end of the prior that is as fine as another where that is."""
-    if quantiles is None:
-        return grid
-    outside = np.linspace(0.0, grid.low, _NODES // 2), np.linspace(grid.high, 1.0, _NODES // 2)
-    return _joined([outside[0], grid.edges, outside[1]], quantiles)
-
-
-def _shared(units: Sequence[Floats], grids: Sequence[QuadratureGrid], worlds: int) -> Evidence:
-    log_worlds, rest = _with_all_but_each(units, grids[0].log_share, worlds)
-    return _evidence(log_worlds, rest, grids)
-
-
-def _per_unit(units: Sequence[Floats], grids: Sequence[QuadratureGrid], worlds: int) -> Evidence:
-    of_unit = [
-        special.logsumexp(log_likelihood + grid.log_share, axis=1, keepdims=True)
-        for log_likelihood, grid in zip(units, grids, strict=True)
-    ]
-    log_worlds, rest = _with_all_but_each(of_unit, np.zeros(1), worlds)
-    rest = [log_rest + grid.log_share for log_rest, grid in zip(rest, grids, strict=True)]
-    return _evidence(log_worlds, rest, grids)
-
-
 def _with_all_but_each(
-    units: Sequence[Floats], log_share: Floats, worlds: int
-) -> tuple[Floats, list[Floats]]:
+    log_units: Sequence[Floats], log_share: Floats, worlds: int
+) -> tuple[Floats, Floats]:
     """Return logarithms of products with the prior, of all units and of all but each."""
-    impossible = [np.isneginf(log_likelihood) for log_likelihood in units]
-    finite = [
-        np.where(is_so, 0.0, log_likelihood)
-        for is_so, log_likelihood in zip(impossible, units, strict=True)
-    ]
-    count, total = np.sum(impossible, axis=0), np.sum(finite, axis=0) + log_share - np.log(worlds)
-    rest = [
-        np.where(count > is_so, -np.inf, total - log_likelihood)
-        for is_so, log_likelihood in zip(impossible, finite, strict=True)
-    ]
+    impossible = np.isneginf(log_units)
+    finite = np.where(impossible, 0.0, log_units)
+    count, total = impossible.sum(axis=0), finite.sum(axis=0) + log_share - np.log(worlds)
+    rest = np.where(count > impossible, -np.inf, total - finite)
     return np.where(count > 0, -np.inf, total), rest
-
-
-def _evidence(
-    log_worlds: Floats, rest: Sequence[Floats], grids: Sequence[QuadratureGrid]
-) -> Evidence:
-    total = float(special.logsumexp(log_worlds))
-    if np.isfinite(total):
-        log_worlds = log_worlds - total
-    return Evidence(log_worlds, tuple(rest), total, tuple(grids))
 
 
 def _narrower(grid: QuadratureGrid, log_unit: Floats, rest: Floats) -> tuple[float, float]:
@@ -250,7 +213,7 @@ def _narrower(grid: QuadratureGrid, log_unit: Floats, rest: Floats) -> tuple[flo
     return float(grid.edges[first]), float(grid.edges[last])
 
 
-def _is_much(ends: tuple[float, float], grid: QuadratureGrid) -> bool:
+def _is_half(ends: tuple[float, float], grid: QuadratureGrid) -> bool:
     """Return whether the part is half the grid or less: its middle, or its tails."""
     middle = ends[1] - ends[0] <= 0.5 * (grid.high - grid.low)
     return middle or bool(np.ptp(_scores(*ends)) <= 0.5 * np.ptp(_scores(grid.low, grid.high)))

@@ -1,7 +1,6 @@
 """Rows not drawn from the laws of the study, and how much they count before any inspection."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,31 +14,14 @@ REPETITIONS = 8
 """Independent repetitions of the sampler, where the design has no replicates of its own."""
 
 
-class Importance(NamedTuple):
-    """Importance weights of rows before any inspection.
-
-    Attributes
-    ----------
-    of_rows : ndarray, shape (n,)
-    from_study : ndarray of bool, shape (n,)
-        Which rows were drawn from the laws of the study.
-    """
-
-    of_rows: Floats
-    from_study: Mask
-
-    @property
-    def most(self) -> float:
-        """The most that any row can count, computed or not."""
-        return len(self.from_study) / int(self.from_study.sum())
+def importance_of(rows: Result) -> Floats:
+    """Return the importance weight of each row before any inspection, shape (n,)."""
+    return rows.dataset[IMPORTANCE].values if rows.has_rounds else np.ones(len(rows))
 
 
-def importance_of(rows: Result) -> Importance:
-    """Return the importance weights of the rows of a result before any inspection."""
-    if not rows.has_rounds:
-        equal = np.ones(len(rows))
-        return Importance(equal, equal > 0)
-    return Importance(rows.dataset[IMPORTANCE].values, rows.dataset[ROUND].values == 0)
+def from_study(rows: Result) -> Mask:
+    """Return which rows were drawn from the laws of the study, shape (n,)."""
+    return rows.dataset[ROUND].values == 0 if rows.has_rounds else np.ones(len(rows), dtype=bool)
 
 
 def repetitions_of(rows: Result) -> NDArray[np.int32]:
@@ -56,7 +38,7 @@ def own_rows(rows: Result) -> Result:
     """Return the rows drawn from the laws of the study alone, as they were."""
     if not rows.has_rounds:
         return rows
-    study_rows = rows.take(importance_of(rows).from_study).dataset.drop_vars([IMPORTANCE, ROUND])
+    study_rows = rows.take(from_study(rows)).dataset.drop_vars([IMPORTANCE, ROUND])
     attrs = dict(study_rows.attrs)
     samples, replicates = map(int, attrs.pop(OWN_SIZE))
     study_rows.attrs = attrs | {"samples": samples, "replicates": replicates}
@@ -88,27 +70,13 @@ def with_rounds(
     """
     n = len(study_rows)
     names = list(study_rows.dataset.data_vars)
-    new = xr.concat(
-        [round_rows[names].drop_vars(("replicate", "group", "block")) for round_rows in rounds],
-        "row",
-        data_vars="minimal",
-        coords="minimal",
-        compat="override",
-        join="override",
-        combine_attrs="override",
+    new = _one_below_the_other(
+        [round_rows[names].drop_vars(("replicate", "group", "block")) for round_rows in rounds]
     )
     new = new.assign_coords(
         {name: ("row", values) for name, values in _places(study_rows, new.sizes["row"]).items()}
     )
-    combined = xr.concat(
-        [study_rows.dataset, new],
-        "row",
-        data_vars="minimal",
-        coords="minimal",
-        compat="override",
-        join="override",
-        combine_attrs="override",
-    )
+    combined = _one_below_the_other([study_rows.dataset, new])
     sizes = [n, *(round_rows.sizes["row"] for round_rows in rounds)]
     about = {"role": IMPORTANCE, "units": "1"}
     meaning = "how much the row counts before the inspections"
@@ -128,6 +96,19 @@ def with_rounds(
         row=combined["row"].copy(data=np.arange(combined.sizes["row"])),
         replicate=combined["replicate"].copy(data=repetition),
     ).assign_attrs({"samples": len(repetition) // count, "replicates": count, OWN_SIZE: size})
+
+
+def _one_below_the_other(parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Return the rows of all parts; what they have in common is that of the first."""
+    return xr.concat(
+        parts,
+        "row",
+        data_vars="minimal",
+        coords="minimal",
+        compat="override",
+        join="override",
+        combine_attrs="override",
+    )
 
 
 def _places(study_rows: Result, count: int) -> dict[str, NDArray[np.integer]]:

@@ -7,8 +7,9 @@ import numpy as np
 from scipy import special
 
 from uq.contract import Floats
+from uq.learning.evidence import on_wide_grids
 from uq.learning.inspections import Inspection
-from uq.learning.posterior import Posterior, on_wide_grids
+from uq.learning.posterior import Posterior
 
 
 class Taught(NamedTuple):
@@ -42,11 +43,11 @@ def taught(posterior: Posterior) -> Iterator[Taught]:
     .. [1] D. V. Lindley, "On a measure of the information provided by an experiment", Ann. Math.
        Stat. 27, 986-1005 (1956).
     """
-    likelihoods, count = posterior.likelihoods, int(posterior.world.max()) + 1
-    grids, evidence = on_wide_grids(posterior)
-    for unit, grid in enumerate(grids):
-        world = posterior.world[likelihoods.blocks[unit]]
-        size = np.bincount(world, minlength=count)[world]
+    likelihoods = posterior.likelihoods
+    evidence = on_wide_grids(posterior.evidence, likelihoods)
+    for unit, grid in enumerate(evidence.grids):
+        world = likelihoods.world[likelihoods.blocks[unit]]
+        size = np.bincount(world)[world]
         rest = evidence.rest[unit][world] + (likelihoods.log_before(unit) - np.log(size))[:, None]
         single = {
             inspection: likelihoods.of_inspection(inspection, unit, grid.values)
@@ -55,8 +56,8 @@ def taught(posterior: Posterior) -> Iterator[Taught]:
         for inspection in single:
             others = [log for other, log in single.items() if other != inspection]
             bits = _gain(rest + sum(others, np.zeros(rest.shape)), single[inspection])
-            look = posterior.looks[inspection]
-            yield Taught(inspection, bits, look.unit, look.time_unit)
+            observable = likelihoods.observables[inspection]
+            yield Taught(inspection, bits, observable.unit, observable.time_unit)
 
 
 def _gain(before: Floats, log_likelihood: Floats) -> float:

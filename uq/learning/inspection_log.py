@@ -1,14 +1,12 @@
 """All inspections of a result, each used once."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from uq.errors import InputError
 from uq.files.paths import node
 from uq.learning.inspections import Inspection, InspectionKind, read_inspections, read_tables
-from uq.learning.posterior_result import inspections_of
-from uq.result.result import Result
 from uq.text.literals import read_toml
 
 Given = str | Path | Sequence[Mapping[str, object]]
@@ -42,9 +40,11 @@ def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
     except (ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{path}: not TOML: {error}") from None
     tables = data.get("inspection", [])
-    if list(data) != ["inspection"] or not isinstance(tables, list):
-        raise InputError(f"{path}: must consist of tables [[inspection]]")
-    if not all(isinstance(table, dict) for table in tables):
+    if (
+        list(data) != ["inspection"]
+        or not isinstance(tables, list)
+        or not all(isinstance(table, dict) for table in tables)
+    ):
         raise InputError(f"{path}: must consist of tables [[inspection]]")
     begin = [n for n, line in enumerate(text.splitlines(), start=1) if _HEADER.match(line)]
     if len(begin) == len(tables):
@@ -52,43 +52,33 @@ def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
     return tables, [f"{path}: inspection {number + 1}" for number in range(len(tables))]
 
 
-def all_of(result: Result, new: Sequence[Inspection]) -> list[Inspection]:
+def all_of(previous: Sequence[Inspection], new: Sequence[Inspection]) -> list[Inspection]:
     """Return the inspections that a result has been updated with, and new ones.
 
     Raises
     ------
     InputError
-        One line for each that has been used.
+        One line for each that has been used, and for each life that was seen running after its end.
     """
-    used, faults = inspections_of(result), []
-    count = len(used)
+    used, faults = [*previous], []
     for inspection in new:
         if inspection in used:
             place = used.index(inspection)
-            by = "this result" if place < count else used[place].where
+            by = "this result" if place < len(previous) else used[place].where
             faults.append(
                 f"{inspection.where} (unit {inspection.unit}, {inspection.output},"
                 f" {inspection.kind}): already used by {by}; a measurement counts once"
             )
         used.append(inspection)
-    faults += _contradictions(used)
+    faults += [
+        f"{running.where} (unit {running.unit}, {running.output}): survived"
+        f" until {running.time:g}, but had ended by {end.time:g} ({end.where})"
+        for running in used
+        for end in used
+        if (running.kind, end.kind) == (InspectionKind.SURVIVED, InspectionKind.ENDED)
+        and (running.unit, running.output) == (end.unit, end.output)
+        and (running.time or 0.0) >= (end.time or 0.0)
+    ]
     if faults:
         raise InputError(*faults)
     return used
-
-
-def _contradictions(inspections: Sequence[Inspection]) -> Iterator[str]:
-    """Yield which lives had ended before they were seen running."""
-    ended = [inspection for inspection in inspections if inspection.kind is InspectionKind.ENDED]
-    for inspection in inspections:
-        for end in ended:
-            same = (inspection.unit, inspection.output) == (end.unit, end.output)
-            if (
-                same
-                and inspection.kind is InspectionKind.SURVIVED
-                and (inspection.time or 0.0) >= (end.time or 0.0)
-            ):
-                yield (
-                    f"{inspection.where} (unit {inspection.unit}, {inspection.output}): survived"
-                    f" until {inspection.time:g}, but had ended by {end.time:g} ({end.where})"
-                )

@@ -1,7 +1,7 @@
 """Inspections, and how they are read from files and tables."""
 
 import csv
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from math import isfinite
@@ -96,16 +96,7 @@ def read_inspections(path: Path) -> list[Inspection]:
     InputError
         One line for each mistake.
     """
-    faults: list[str] = []
-    inspections = []
-    for line, cells in _lines(path):
-        where = f"{path}, line {line}"
-        inspection, problems = _read(cells, where)
-        faults += [f"{where}: {problem}" for problem in problems]
-        if inspection is not None:
-            inspections.append(inspection)
-    if faults:
-        raise InputError(*faults)
+    inspections = _read_all((f"{path}, line {line}", cells) for line, cells in _lines(path))
     if not inspections:
         raise InputError(f"{path}: has no inspection below its first line")
     return inspections
@@ -123,19 +114,28 @@ def read_tables(
     places : sequence of str, optional
         Where each is written, for messages; by default its number.
     """
+    numbers = [f"inspection {number}" for number in range(1, len(tables) + 1)]
+    return _read_all(zip(places or numbers, tables, strict=True), _misfit)
+
+
+def _read_all(
+    entries: Iterable[tuple[str, Mapping[str, object]]],
+    misfit: Callable[[str, object], Iterable[str]] = lambda name, value: (),
+) -> list[Inspection]:
+    """Return inspections, given where each is written and its cells; refuse with all faults."""
     faults: list[str] = []
     inspections = []
-    numbers = [f"inspection {number}" for number in range(1, len(tables) + 1)]
-    for where, table in zip(places or numbers, tables, strict=True):
+    for where, table in entries:
         given = {name: value for name, value in table.items() if value is not None}
-        if wrong := [problem for name, value in given.items() for problem in _misfit(name, value)]:
-            faults += [f"{where}: {problem}" for problem in wrong]
-            continue
+        problems = [problem for name, value in given.items() for problem in misfit(name, value)]
         cells = {name: str(value) for name, value in given.items()}
-        inspection, problems = _read(cells, where)
+        numbers, problems = ({}, problems) if problems else _numbers(cells)
         faults += [f"{where}: {problem}" for problem in problems]
-        if inspection is not None:
-            inspections.append(inspection)
+        if not problems:
+            kind = InspectionKind(cells["kind"])
+            inspections.append(
+                Inspection(cells["unit"], cells["output"], kind, **numbers, where=where)
+            )
     if faults:
         raise InputError(*faults)
     return inspections
@@ -198,8 +198,8 @@ def _no_column(name: str) -> str:
     return f"no such column '{name}'{nearest(name, COLUMNS)} (allowed: {', '.join(COLUMNS)})"
 
 
-def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list[str]]:
-    """Return an inspection, or what is wrong with its cells."""
+def _numbers(cells: Mapping[str, str]) -> tuple[dict[str, float], list[str]]:
+    """Return the numbers of an inspection, and what is wrong with its cells."""
     faults = [f"{name} is missing" for name in _REQUIRED if not cells.get(name, "").strip()]
     if not cells.get("unit", "").isprintable():
         faults.append(f"unit = {cells['unit']!r}: must consist of printable characters")
@@ -211,17 +211,11 @@ def _read(cells: Mapping[str, str], where: str) -> tuple[Inspection | None, list
             except (ValueError, OverflowError):
                 since = ", in the unit of the life, since that began" if name == "time" else ""
                 faults.append(f"{name} = {cells[name]}: must be a finite number{since}")
-    if cells.get("kind") and cells["kind"] not in list(InspectionKind):
-        allowed = f"(allowed: {', '.join(InspectionKind)})"
-        like = nearest(cells["kind"], list(InspectionKind))
-        faults.append(f"kind = {cells['kind']}: no such kind{like} {allowed}")
-    if faults:
-        return None, faults
-    kind = InspectionKind(cells["kind"])
-    faults = list(_conflicts(kind, numbers))
-    if faults:
-        return None, faults
-    return Inspection(cells["unit"], cells["output"], kind, **numbers, where=where), []
+    kinds = list(InspectionKind)
+    if (kind := cells.get("kind")) and kind not in kinds:
+        allowed = f"{nearest(kind, kinds)} (allowed: {', '.join(kinds)})"
+        faults.append(f"kind = {kind}: no such kind{allowed}")
+    return numbers, faults or list(_conflicts(InspectionKind(cells["kind"]), numbers))
 
 
 def _number(text: str) -> float:
@@ -236,9 +230,8 @@ def _number(text: str) -> float:
 def _conflicts(kind: InspectionKind, numbers: Mapping[str, float]) -> Iterator[str]:
     """Yield the faults of the numbers of an inspection of a kind."""
     given = [name for name in _NUMBERS if name in numbers]
-    positive: Callable[[float], bool] = lambda number: number > 0  # noqa: E731
     for name in ("sd", "cv", *_DETECTION):
-        if name in numbers and not positive(numbers[name]):
+        if name in numbers and numbers[name] <= 0:
             yield f"{name} = {numbers[name]:g}: must be above 0"
     if numbers.get("cv", 0.0) >= MOST_CV:
         yield f"cv = {numbers['cv']:g}: must be a coefficient of variation, such as 0.1"
@@ -253,7 +246,7 @@ def _conflicts(kind: InspectionKind, numbers: Mapping[str, float]) -> Iterator[s
         return
     if "sd" in given and "cv" in given:
         yield "sd and cv: give one of them"
-    if "cv" in given and not numbers.get("value", 1.0) > 0:
+    if "cv" in given and numbers.get("value", 1.0) <= 0:
         yield f"value = {numbers['value']:g}: must be above 0 with a cv; or give an sd"
     curve = [name for name in _DETECTION if name in given]
     if kind is InspectionKind.MEASURED:

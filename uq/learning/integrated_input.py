@@ -4,13 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.scaling import scalers
 from uq.contract import Floats, Output
 from uq.learning.dependent_outputs import dependent_outputs
-from uq.learning.observables import Look
+from uq.learning.observables import Observable
 from uq.result.result import Result
 from uq.sampling.levels import OWN, SHARED
 from uq.sampling.truncation import ppf_within
@@ -46,17 +45,10 @@ class IntegratedScale:
         """Return quantiles of its prior."""
         return ppf_within(self.inputs.laws[self.name], probability, self.inputs.bounds[self.name])
 
-    def longer(self, look: Look, rows: NDArray[np.intp], values: Floats) -> Floats:
-        """Return by which factor lives of some rows are longer with other values, shape (m, g).
 
-        These are the same in all rows, shape (g,), or differ, shape (m, g).
-        """
-        if look.name not in self.exponents:
-            return np.ones((len(rows), values.shape[-1]))
-        return np.asarray((values / self.drawn[rows, None]) ** self.exponents[look.name])
-
-
-def scale_of(rows: Result, looks: Sequence[Look]) -> tuple[IntegratedScale | None, tuple[str, ...]]:
+def scale_of(
+    rows: Result, observables: Sequence[Observable]
+) -> tuple[IntegratedScale | None, tuple[str, ...]]:
     """Return the input to integrate, and sentences on those that do too much to be integrated.
 
     A shared one first, of these the one that scatters lives most. One that scales all lives and
@@ -64,8 +56,11 @@ def scale_of(rows: Result, looks: Sequence[Look]) -> tuple[IntegratedScale | Non
     computed with the input as drawn.
     """
     inputs, levels = inputs_of(rows), rows.levels
-    scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
-    exponents = {look.name: free_scales(inputs, look.declared) for look in scaled}
+    exponents = {
+        observable.name: free_scales(inputs, observable.declared)
+        for observable in observables
+        if observable.declared.is_lifetime or observable.depths is not None
+    }
     common = set.intersection(*map(set, exponents.values())) if exponents else set()
     candidates = [name for name in inputs.laws if name in common and levels[name] in (SHARED, OWN)]
     others = {name: list(dependent_outputs(rows, name)) for name in candidates}
@@ -87,6 +82,15 @@ def scale_of(rows: Result, looks: Sequence[Look]) -> tuple[IntegratedScale | Non
     best_exponents = {name: by_input[best] for name, by_input in exponents.items()}
     scale = IntegratedScale(best, levels[best], best_exponents, inputs.values[best], inputs)
     return scale, tuple(why)
+
+
+def shared_inputs(rows: Result, scale: IntegratedScale | None) -> list[str]:
+    """Return the inputs that units share, without the integrated one and those equal to it."""
+    shared = [name for name, level in rows.levels.items() if level == SHARED]
+    if scale is None or scale.is_own:
+        return shared
+    tied = {a for a, b in scale.inputs.tied.items() if b == scale.name}
+    return [name for name in shared if name not in {scale.name, *tied}]
 
 
 def free_scales(inputs: Inputs, output: Output) -> dict[str, float]:

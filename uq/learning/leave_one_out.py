@@ -17,9 +17,7 @@ from uq.result.nesting import Nesting
 Places = NDArray[np.integer]
 
 
-def log_worth(
-    evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting, is_own: bool
-) -> Floats:
+def log_worth(evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting) -> Floats:
     """Return leave-one-out log weights: of each row, given the inspections of other units.
 
     Parameters
@@ -30,8 +28,6 @@ def log_worth(
         Of the inspected units.
     place : Nesting
         Of all rows.
-    is_own : bool
-        Whether each unit has an integrated input of its own, or there is none.
 
     Returns
     -------
@@ -42,13 +38,14 @@ def log_worth(
         none.
     """
     values = [grid.values for grid in evidence.grids]
-    worth = np.full((len(place.sample), 1 if is_own else len(values[0])), -np.inf)
+    shared = likelihoods.shares_scale
+    worth = np.full((len(place.sample), len(values[0]) if shared else 1), -np.inf)
     for unit, rows in enumerate(likelihoods.blocks):
         sample = place.sample[rows]
         of_unit = sample * place.units + place.unit[rows]
         log_rows = likelihoods.log_likelihood(unit, values[unit])
         joint = evidence.rest[unit][sample] + _mean_of_others(log_rows, of_unit, sample)
-        worth[rows] = special.logsumexp(joint, axis=1, keepdims=True) if is_own else joint
+        worth[rows] = joint if shared else special.logsumexp(joint, axis=1, keepdims=True)
     return worth
 
 

@@ -1,13 +1,20 @@
 """Likelihood of an inspection, given the true value of the observable."""
 
+from collections.abc import Callable
 from math import log, sqrt
 
 import numpy as np
 from scipy import special
 
-from uq.contract import Floats
-from uq.learning.inspections import Inspection, InspectionKind
+from uq.contract import Floats, Mask
+from uq.learning.inspections import OUTCOMES, Inspection, InspectionKind
 
+_AGREES: dict[InspectionKind, Callable[..., Mask]] = {
+    InspectionKind.BELOW: np.less,
+    InspectionKind.ABOVE: np.greater,
+    InspectionKind.SURVIVED: np.greater,
+    InspectionKind.ENDED: np.less_equal,
+}
 _NINETY = float(special.ndtri(0.9))
 
 
@@ -17,9 +24,9 @@ def log_likelihood(inspection: Inspection, truth: Floats, model_cv: float = 0.0)
     Parameters
     ----------
     inspection : Inspection
-        Of kind ``measured``, ``below`` or ``above``.
     truth : ndarray
-        Values of the quantity, in the unit of the inspection; NaN where there is none.
+        Values of the quantity, in the unit of the inspection, or the life whose outcome it tells;
+        NaN where there is none.
     model_cv : float
         Coefficient of variation of reality about the model: lognormal, with median 1, beside a
         lognormal error or a detection curve; normal beside a normal error or an exact limit.
@@ -36,6 +43,8 @@ def log_likelihood(inspection: Inspection, truth: Floats, model_cv: float = 0.0)
 
 def _of_kind(inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
     value = inspection.value
+    if inspection.kind in OUTCOMES:
+        return _log_whether(inspection.kind, truth, inspection.time)
     if inspection.detection_50 is not None and inspection.detection_90 is not None:
         half, ninety = log(inspection.detection_50), log(inspection.detection_90)
         scale = np.hypot((ninety - half) / _NINETY, _sigma(model_cv))
@@ -49,12 +58,16 @@ def _of_kind(inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
     else:
         spread = np.hypot(inspection.sd or 0.0, np.abs(truth) * model_cv)
         if inspection.sd is None and not model_cv:  # a limit without error
-            inside = truth < value if inspection.kind is InspectionKind.BELOW else truth > value
-            return np.where(np.isnan(truth), -np.inf, np.where(inside, 0.0, -np.inf))
+            return _log_whether(inspection.kind, truth, value)
         z = (value - truth) / spread
     if inspection.kind is InspectionKind.MEASURED:
         return np.asarray(-(z**2) / 2 - np.log(spread) - log(2 * np.pi) / 2)
     return _log_side(inspection.kind, z)
+
+
+def _log_whether(kind: InspectionKind, truth: Floats, limit: float | None) -> Floats:
+    """Return 0 where the truth agrees with an observation without error, else -inf."""
+    return np.where(_AGREES[kind](truth, limit), 0.0, -np.inf)
 
 
 def _log_side(kind: InspectionKind, z: Floats) -> Floats:
@@ -64,20 +77,6 @@ def _log_side(kind: InspectionKind, z: Floats) -> Floats:
 
 def _sigma(cv: float) -> float:
     return sqrt(np.log1p(cv**2))
-
-
-def log_outcome(kind: InspectionKind, life: Floats, time: Floats) -> Floats:
-    """Return the logarithm of the likelihood that a life has ``survived`` or ``ended`` by a time.
-
-    Parameters
-    ----------
-    kind : InspectionKind
-    life, time : ndarray
-        Of one shape; NaN where a row has no life.
-    """
-    with np.errstate(invalid="ignore"):
-        inside = life > time if kind is InspectionKind.SURVIVED else life <= time
-    return np.where(inside, 0.0, -np.inf)
 
 
 def drawn_measurement(

@@ -1,6 +1,6 @@
 """Value of the next inspection: the expected fall of the standard deviation that units share."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, nan
 
@@ -9,7 +9,7 @@ import numpy as np
 from uq.contract import Floats
 from uq.errors import InputError, choices
 from uq.learning.inspections import Inspection, InspectionKind
-from uq.learning.observables import Look, Quantities, look_at, quantities_of
+from uq.learning.observables import Observable, observable_of, observables_of
 from uq.learning.remaining_life import check_times
 from uq.result.elements import Element
 from uq.result.nesting import Nesting
@@ -119,50 +119,52 @@ def worth(
     weights = rows.weights
     worth_of_rows = np.ones(len(element.values)) if weights is None else weights.weights
     target = _logarithm(np.where(element.censored, np.nan, element.values))
-    quantities, narrowing, notes = quantities_of(rows), {}, list[str]()
+    observables, narrowing, notes = observables_of(rows), {}, list[str]()
     for time in times or (None,):
-        look = _look(quantities, output, time)
-        notes += _rough(look, time, worth_of_rows)
-        truth = look.truth(time, np.arange(len(target)), np.ones((len(target), 1)))[:, 0]
+        observable = _observable(observables, output, time)
+        notes += _rough(observable, time, worth_of_rows)
+        truth = observable.truth(time, np.arange(len(target)), np.ones((len(target), 1)))[:, 0]
         if negative := np.mean(truth < 0):
             raise InputError(
                 f"uq next-inspection: {output} is negative in {100 * negative:.2g} % of the rows: a"
                 " coefficient of variation cannot describe the error of such a measurement"
             )
         seen = _logarithm(truth)
-        between = _Between(target, seen, worth_of_rows, place)
+        between, within = _variance_components((target, seen), worth_of_rows, place)
         for count in units:
-            narrowing[time, count] = between.narrowing(count, float(np.log1p(cv**2)))
-    spread = _Between(target, target, worth_of_rows, place).of_life
-    return Worth(element.name, output, max(spread, 0.0) ** 0.5, narrowing, look.time_unit, notes)
+            narrowing[time, count] = _narrowing(between, within, count, float(np.log1p(cv**2)))
+    spread = _variance_components((target, target), worth_of_rows, place)[0][0, 0]
+    spread = max(spread, 0.0) ** 0.5
+    return Worth(element.name, output, spread, narrowing, observable.time_unit, notes)
 
 
 def unit_of_time(result: Result, output: str) -> str:
     """Return the CF unit of the time of an inspection of what a result has, or ""."""
-    depths = quantities_of(result.independent).depths
-    return depths[output].time_unit if output in depths else ""
+    observable = observables_of(result.independent).get(output)
+    return observable.time_unit if observable and observable.depths is not None else ""
 
 
-def _look(quantities: Quantities, output: str, time: float | None) -> Look:
+def _observable(
+    observables: Mapping[str, Observable], output: str, time: float | None
+) -> Observable:
     """Return the observable to inspect."""
-    when = Inspection("", output, InspectionKind.MEASURED, time, _ANY)
-    if output in quantities.elements and time is not None:
+    if output in observables and observables[output].depths is None and time is not None:
         raise InputError(f"uq next-inspection: {output} is not a depth: leave out when")
-    return look_at(quantities, when)
+    return observable_of(observables, Inspection("", output, InspectionKind.MEASURED, time, _ANY))
 
 
-def _rough(look: Look, time: float | None, weights: Floats) -> Iterator[str]:
+def _rough(observable: Observable, time: float | None, weights: Floats) -> Iterator[str]:
     """Yield how many rows do not determine a depth by a time; refuse where most do not."""
-    if look.depths is None or time is None:
+    if observable.depths is None or time is None:
         return
-    everyone, last = np.arange(len(weights)), look.depths.depths[-1]
+    everyone, last = np.arange(len(weights)), observable.depths.depths[-1]
     longer = np.ones((len(weights), 1))
-    unknown = look.truth(time, everyone, longer) > last
-    unknown |= look.open_depth(time, everyone, longer)
+    unknown = observable.truth(time, everyone, longer) > last
+    unknown |= observable.open_depth(time, everyone, longer)
     share = float(np.average(unknown[:, 0], weights=weights))
     why = (
-        f"by {beside(number(time), look.time_unit)}, {percent(share)} of the rows have worn beyond"
-        f" the last depth of the result, {last:g} {look.unit}, or were censored before"
+        f"by {beside(number(time), observable.time_unit)}, {percent(share)} of the rows have worn"
+        f" beyond the last depth of the result, {last:g} {observable.unit}, or were censored before"
     )
     if share > _MOST:
         raise InputError(f"uq next-inspection: {why}")
@@ -170,37 +172,33 @@ def _rough(look: Look, time: float | None, weights: Floats) -> Iterator[str]:
         yield f"Rough: {why}; depths are continued straight."
 
 
-class _Between:
-    """Variance components of two logarithms: covariances between and within samples."""
+def _variance_components(
+    pair: tuple[Floats, Floats], weights: Floats, place: Nesting
+) -> tuple[Floats, Floats]:
+    """Return covariances of two values of each row, each (2, 2): between and within samples."""
+    kept = np.isfinite(pair[0]) & np.isfinite(pair[1])
+    means = [place.means(np.where(kept, values, np.nan)) for values in pair]
+    whole = np.isfinite(means[0])
+    size = np.bincount(place.sample[kept], minlength=place.samples)[whole]
+    worth = place.means(weights)[whole]
+    inside = [
+        values[kept] - mean[place.sample[kept]] for values, mean in zip(pair, means, strict=True)
+    ]
+    spare = max(int(kept.sum()) - int(whole.sum()), 1)
+    within = np.array([[a @ b for b in inside] for a in inside]) / spare
+    if whole.sum() <= 2:
+        return np.full((2, 2), nan), within
+    of_means = np.cov(np.stack([mean[whole] for mean in means]), aweights=worth)
+    return of_means - within * np.average(1 / size, weights=worth), within
 
-    def __init__(self, life: Floats, seen: Floats, weights: Floats, place: Nesting):
-        kept = np.isfinite(life) & np.isfinite(seen)
-        both = [np.where(kept, values, np.nan) for values in (life, seen)]
-        means = [place.means(values) for values in both]
-        whole = np.isfinite(means[0])
-        size = np.bincount(place.sample[kept], minlength=place.samples)[whole]
-        worth = place.means(weights)[whole]
-        inside = [
-            values[kept] - mean[place.sample[kept]]
-            for values, mean in zip(both, means, strict=True)
-        ]
-        spare = max(int(kept.sum()) - int(whole.sum()), 1)
-        within = np.array([[a @ b for b in inside] for a in inside]) / spare
-        if whole.sum() > 2:
-            of_means = np.cov(np.stack([mean[whole] for mean in means]), aweights=worth)
-            of_means = of_means - within * np.average(1 / size, weights=worth)
-        else:
-            of_means = np.full((2, 2), nan)
-        self.of_life, self._both, self._seen = of_means[0, 0], of_means[0, 1], of_means[1, 1]
-        self._within = within[1, 1]
 
-    def narrowing(self, units: int, error: float) -> float:
-        """Return the share by which the standard deviation of the life is expected to fall."""
-        variance = self._seen + (self._within + error) / units
-        if not (self.of_life > 0 and variance > 0):
-            return nan
-        explained = min(self._both**2 / (self.of_life * variance), 1.0)
-        return float(1 - (1 - explained) ** 0.5)
+def _narrowing(between: Floats, within: Floats, units: int, error: float) -> float:
+    """Return the share by which the standard deviation of the life is expected to fall."""
+    variance = between[1, 1] + (within[1, 1] + error) / units
+    if not (between[0, 0] > 0 and variance > 0):
+        return nan
+    explained = min(between[0, 1] ** 2 / (between[0, 0] * variance), 1.0)
+    return float(1 - (1 - explained) ** 0.5)
 
 
 def _logarithm(values: Floats) -> Floats:

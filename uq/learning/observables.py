@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Mask, Output
 from uq.errors import InputError, choices, nearest
 from uq.learning.inspections import OUTCOMES, Inspection, InspectionKind
-from uq.learning.likelihood import log_likelihood, log_outcome
+from uq.learning.likelihood import log_likelihood
 from uq.learning.worn_depth import WornDepths
-from uq.result.element import Element, places
+from uq.result.element import places
 from uq.result.result import Result
 from uq.text.element_names import same_name
 
@@ -21,7 +21,7 @@ _FAR = 1e6  # times the last declared depth
 
 
 @dataclass(frozen=True)
-class Look:
+class Observable:
     """One quantity that can be inspected, in all rows of a result.
 
     Attributes
@@ -77,8 +77,6 @@ class Look:
 
     def log_likelihood(self, inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
         """Return the logarithm of the likelihood of an inspection, given `truth`."""
-        if inspection.kind in OUTCOMES:
-            return log_outcome(inspection.kind, truth, np.full(truth.shape, inspection.time))
         if self.declared.is_angle:
             truth = self._angle(inspection, truth)
         return log_likelihood(inspection, truth, model_cv)
@@ -123,96 +121,101 @@ class Look:
         return np.where(self.censored[rows], beyond[-1], beyond[reached])
 
 
-@dataclass(frozen=True)
-class Quantities:
-    """The observables of a result.
+def observables_of(result: Result) -> dict[str, Observable]:
+    """Return the observables of a result, or of a selection of its rows, by name.
 
-    Attributes
-    ----------
-    elements : dict of str to Element
-    depths : dict of str to Look
+    Outputs, element by element, and the depths that its lives are declared for.
     """
-
-    elements: Mapping[str, Element]
-    depths: Mapping[str, Look]
-
-    @property
-    def time_units(self) -> list[str]:
-        """Of lives, each once."""
-        return list(
-            {element.units: None for element in self.elements.values() if element.is_lifetime}
+    numbers = [name for name, output in result.outputs.items() if not output.is_category]
+    elements = list(result.elements(numbers, every=True))
+    units = {element.units for element in elements if element.is_lifetime}
+    only = units.pop() if len(units) == 1 else ""
+    observables = {
+        element.name: Observable(
+            element.name,
+            element.declared,
+            element.values,
+            None,
+            element.censored,
+            element.units if element.is_lifetime else only,
         )
+        for element in elements
+    }
+    return observables | {
+        depth.name: depth for depth in _depths(result) if depth.name not in observables
+    }
 
 
-def quantities_of(result: Result) -> Quantities:
-    """Return the observables of a result, or of a selection of its rows."""
-    elements = {element.name: element for element in result.elements(_numbers(result), every=True)}
-    return Quantities(elements, dict(_depths(result)))
-
-
-def as_named(quantities: Quantities, inspection: Inspection) -> Inspection:
+def as_named(observables: Mapping[str, Observable], inspection: Inspection) -> Inspection:
     """Return an inspection with its output named as in the result."""
-    name = same_name(inspection.output, [*quantities.elements, *quantities.depths])
+    name = same_name(inspection.output, [*observables])
     return inspection if name == inspection.output else replace(inspection, output=name)
 
 
-def look_at(quantities: Quantities, inspection: Inspection) -> Look:
-    """Return the observable of an inspection.
-
-    Parameters
-    ----------
-    quantities : Quantities
-    inspection : Inspection
-
-    Returns
-    -------
-    Look
+def observed(rows: Result, inspections: Sequence[Inspection]) -> dict[Inspection, Observable]:
+    """Return the observable of each inspection.
 
     Raises
     ------
     InputError
-        When the result has no such quantity, or it cannot be inspected in this way.
+        One line for each inspection of a quantity that the result does not have, or that cannot be
+        inspected in this way.
     """
-    elements, depths = quantities.elements, quantities.depths
-    if inspection.output in elements:
-        element, units = elements[inspection.output], quantities.time_units
-        _check_output(element, inspection, units)
-        unit = element.units if element.is_lifetime else units[0] if len(units) == 1 else ""
-        return Look(
-            inspection.output, element.declared, element.values, None, element.censored, unit
+    faults: list[str] = []
+    observable_by_inspection = {}
+    observables = observables_of(rows)
+    for inspection in inspections:
+        try:
+            observable_by_inspection[inspection] = observable_of(observables, inspection)
+        except InputError as error:
+            where = f"{inspection.where}: unit {inspection.unit}"
+            faults += [f"{where}: {line}" for line in error.lines]
+    if faults:
+        raise InputError(*faults)
+    return observable_by_inspection
+
+
+def observable_of(observables: Mapping[str, Observable], inspection: Inspection) -> Observable:
+    """Return the observable of an inspection.
+
+    Raises
+    ------
+    InputError
+        When there is no such quantity, or it cannot be inspected in this way.
+    """
+    name = inspection.output
+    if name not in observables:
+        raise InputError(
+            f"output = {name}: no such output{nearest(name, observables)} (allowed:"
+            f" {choices(observables)})"
         )
-    if inspection.output in depths:
-        if inspection.kind in OUTCOMES:
-            raise InputError(
-                f"output = {inspection.output}: a depth does not end; name a life (allowed:"
-                f" {choices(n for n, e in elements.items() if e.is_lifetime)})"
-            )
-        if inspection.time is None:
-            unit = depths[inspection.output].time_unit
-            raise InputError(f"time is missing: when {inspection.output} was inspected [{unit}]")
-        look = depths[inspection.output]
-        _check_reach(look, inspection)
-        return look
-    names = [*elements, *depths]
-    raise InputError(
-        f"output = {inspection.output}: no such output{nearest(inspection.output, names)} (allowed:"
-        f" {choices(names)})"
-    )
+    observable = observables[name]
+    lives = [life for life in observables.values() if life.declared.is_lifetime]
+    if observable.depths is None:
+        _check_output(observable, inspection, list({life.unit: None for life in lives}))
+    elif inspection.kind in OUTCOMES:
+        raise InputError(
+            f"output = {name}: a depth does not end; name a life (allowed:"
+            f" {choices(life.name for life in lives)})"
+        )
+    elif inspection.time is None:
+        raise InputError(f"time is missing: when {name} was inspected [{observable.time_unit}]")
+    else:
+        _check_reach(observable, inspection, float(observable.depths.depths[-1]))
+    return observable
 
 
-def _numbers(result: Result) -> list[str]:
-    return [name for name, output in result.outputs.items() if not output.is_category]
-
-
-def _check_output(element: Element, inspection: Inspection, time_units: Sequence[str]) -> None:
-    if inspection.kind in OUTCOMES and not element.is_lifetime:
+def _check_output(
+    observable: Observable, inspection: Inspection, time_units: Sequence[str]
+) -> None:
+    if inspection.kind in OUTCOMES and not observable.declared.is_lifetime:
         raise InputError(
             f"kind = {inspection.kind}: {inspection.output} is not a life; write measured, below or"
             " above"
         )
     if inspection.time is None or inspection.kind in OUTCOMES:
         return
-    if element.is_lifetime:
+    if observable.declared.is_lifetime:
         raise InputError(
             f"time = {inspection.time:g}: leave it out where a life is {inspection.kind}: the life"
             " is the value"
@@ -224,7 +227,7 @@ def _check_output(element: Element, inspection: Inspection, time_units: Sequence
         )
 
 
-def _depths(result: Result) -> Iterator[tuple[str, Look]]:
+def _depths(result: Result) -> Iterator[Observable]:
     """Yield the depths that the lives of a result are declared for, such as ``depth[site=left]``.
 
     A dimension with a unit, along which an output is a life, is a depth. Of several outputs with
@@ -254,7 +257,7 @@ def _depths(result: Result) -> Iterator[tuple[str, Look]]:
             )
             shown = Output(str(axis.attrs["units"]), declared.meaning, scales=declared.scales)
             censored = np.asarray(cut.any(axis=1))
-            yield name, Look(name, shown, np.empty(0), worn, censored, declared.unit)
+            yield Observable(name, shown, np.empty(0), worn, censored, declared.unit)
 
 
 def reach(inspection: Inspection) -> float:
@@ -269,13 +272,11 @@ def reach(inspection: Inspection) -> float:
     return inspection.value + _REACH * (inspection.sd or 0.0)
 
 
-def _check_reach(look: Look, inspection: Inspection) -> None:
+def _check_reach(observable: Observable, inspection: Inspection, last: float) -> None:
     """Refuse a depth beyond the last one that the result knows of."""
-    assert look.depths is not None
-    most, last = reach(inspection), float(look.depths.depths[-1])
-    if most > last:
+    if (most := reach(inspection)) > last:
         raise InputError(
             f"value = {inspection.value or most:g}: with its error it reaches {most:.3g}"
-            f" {look.unit}, beyond the last depth of the result, {last:g} {look.unit}; add a deeper"
-            " one to the study's depths"
+            f" {observable.unit}, beyond the last depth of the result, {last:g} {observable.unit};"
+            " add a deeper one to the study's depths"
         )

@@ -10,7 +10,7 @@ from uq.assess.posterior_scale import learnt_input, moments_of_input
 from uq.assess.row_inputs import inputs_of
 from uq.contract import Floats
 from uq.learning.importance import importance_of
-from uq.learning.posterior_result import as_unit, prior_of
+from uq.learning.posterior_result import every_unit, prior_of
 from uq.result.result import Result
 from uq.result.weights import WEIGHT
 from uq.sampling.levels import SHARED
@@ -74,31 +74,25 @@ class Confounded:
     first, second : str
     correlation : float
         Of their ranks, given the inspections.
-    before : float
-        The same of the rows.
     """
 
     first: str
     second: str
     correlation: float
-    before: float
 
 
 def inputs_learnt(result: Result) -> Iterator[InputLearnt]:
     """Yield the shared inputs of a posterior, then those of each inspected unit."""
     levels, before = result.levels, prior_of(result)
     asked = tuple(sorted({*QUANTILES, *result.analysis.quantiles}))
-    counted = importance_of(before).of_rows
+    counted = importance_of(before)
     prior = {name: _before(before.dataset[name].values, counted, asked) for name in levels}
-    for name in (input_name for input_name, level in levels.items() if level == SHARED):
-        after = _after(result, name, asked)
-        yield InputLearnt(name, str(result.dataset[name].attrs["units"]), prior[name], after)
-    for label in map(str, result.dataset["inspected"].values):
-        unit = Result(as_unit(result, label))
-        for name in (input_name for input_name, level in levels.items() if level != SHARED):
-            after = _after(unit, name, asked)
-            units = str(result.dataset[name].attrs["units"])
-            yield InputLearnt(f"{name}[unit={label}]", units, prior[name], after)
+    for label, rows in every_unit(result):
+        for name, level in levels.items():
+            if (level == SHARED) == (label == ""):
+                full_name = f"{name}[unit={label}]" if label else name
+                units = str(result.dataset[name].attrs["units"])
+                yield InputLearnt(full_name, units, prior[name], _after(rows, name, asked))
 
 
 def confounded(result: Result) -> list[Confounded]:
@@ -108,10 +102,10 @@ def confounded(result: Result) -> list[Confounded]:
     """
     levels, before = result.levels, prior_of(result)
     shared = [name for name, level in levels.items() if level == SHARED]
-    pairs = _pairs(result, before, shared, set(shared), "")
-    for label in map(str, result.dataset["inspected"].values):
-        unit = Result(as_unit(result, label))
-        pairs += _pairs(unit, before, list(levels), set(levels) - set(shared), label)
+    pairs = []
+    for label, rows in every_unit(result):
+        names, wanted = (list(levels), {*levels} - {*shared}) if label else (shared, {*shared})
+        pairs += _pairs(rows, before, names, wanted, label)
     return sorted(pairs, key=lambda pair: -abs(pair.correlation))
 
 
@@ -121,34 +115,27 @@ def _pairs(
     """Return the pairs of which one at least is wanted."""
     if len(names) < 2:
         return []
-    after = _correlations(
-        [result.dataset[name].values for name in names], result.dataset[WEIGHT].values
-    )
-    first = _correlations(
-        [before.dataset[name].values for name in names], importance_of(before).of_rows
-    )
+    after = _correlations(result, names, result.dataset[WEIGHT].values)
+    first = _correlations(before, names, importance_of(before))
     called = {name: f"{name}[unit={label}]" if label and name in wanted else name for name in names}
     return [
-        Confounded(called[name], called[other], float(after[i, j]), float(first[i, j]))
+        Confounded(called[name], called[other], float(after[i, j]))
         for i, name in enumerate(names)
         for j, other in enumerate(names[:i])
         if {name, other} & wanted and abs(after[i, j]) >= CONFOUNDED > abs(first[i, j])
     ]
 
 
-def _correlations(columns: list[Floats], weights: Floats) -> Floats:
-    """Return the rank correlations of weighted values."""
-    ranks = np.stack([_ranks(*_ascending(column, weights)) for column in columns])
+def _correlations(rows: Result, names: list[str], weights: Floats) -> Floats:
+    """Return the rank correlations of inputs of weighted rows."""
+    ranks = np.empty((len(names), len(rows)))
+    for name, rank in zip(names, ranks, strict=True):
+        order, share = _ascending(rows.dataset[name].values, weights)
+        rank[order] = share
     with np.errstate(invalid="ignore", divide="ignore"):
         covariance = np.cov(ranks, aweights=weights)
         size = np.sqrt(np.diag(covariance))
         return np.asarray(covariance / np.outer(size, size))
-
-
-def _ranks(order: NDArray[np.intp], share: Floats) -> Floats:
-    ranks = np.empty(len(share))
-    ranks[order] = share
-    return ranks
 
 
 def _ascending(values: Floats, weights: Floats) -> tuple[NDArray[np.intp], Floats]:

@@ -1,12 +1,13 @@
 """The posterior as a result: its rows weighted, with the inspections inside."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from hashlib import sha256
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from uq.assess.posterior_scale import SCORES, terms_at
@@ -15,12 +16,12 @@ from uq.contract import Floats
 from uq.errors import InputError, choices, first_fault_alone, nearest
 from uq.learning.inspections import COLUMNS, Inspection, read_tables
 from uq.learning.integrated_input import free_scales
-from uq.learning.posterior import Posterior, Weighted
-from uq.result.elements import weights_of
+from uq.learning.posterior import Posterior
 from uq.result.result import AnyResult, Result
 from uq.result.variables import error_name
 from uq.result.weights import (
     INPUT,
+    INSPECTED,
     INSPECTIONS,
     INTEGRATED,
     LAW_FOLLOWS,
@@ -86,41 +87,36 @@ def as_result(
         (inspected, sample, score): that law. ``learnt_law_pulls``, ``learnt_law_follows``
         (sample, term), ``unit_law_pulls`` (inspected, sample, term), ``learnt_law_scores``
         (score,): what the rows say together of one that all units share
-        (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a digest of each.
+        (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a digest of
+        each.
     """
     if taken := [name for name in _WEIGHTS if name in rows.dataset.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
-    dataset = rows.dataset
-    if posterior.scale is not None:
+    dataset, scale, n = rows.dataset, posterior.scale, len(rows)
+    if scale is not None:
         assert posterior.any_unit.scale is not None
-        replaced = _rescaled(rows, posterior.scale.name, posterior.any_unit.scale)
+        replaced = _rescaled(rows, scale.name, posterior.any_unit.scale)
         kept = {f"{PRIOR}{name}": _as_prior(rows.dataset[name]) for name in replaced}
         dataset = rows.dataset.assign(replaced | kept)
-    n = len(rows)
     meaning = "how much the row counts, given the inspections"
     attrs = {"role": WEIGHT, "units": "1", "long_name": meaning}
-    both = ("inspected", "row")
-    most = [weighted.weights.most for weighted in _units(posterior)]
-    of_units = np.stack(
-        [_spread_out(weighted, weighted.weights.weights, n, 0.0) for weighted in _units(posterior)]
-    )
+    both, units = ("inspected", "row"), posterior.units.values()
+    of_units = [_among_all(unit.rows, unit.weights.weights, n, 0.0) for unit in units]
+    most = [unit.weights.most for unit in units]
     variables = {
         WEIGHT: ("row", posterior.any_unit.weights.weights, attrs),
-        UNIT_WEIGHT: (both, of_units, attrs | {"long_name": f"{meaning} of the unit"}),
+        UNIT_WEIGHT: (both, np.stack(of_units), attrs | {"long_name": f"{meaning} of the unit"}),
         UNIT_MOST: ("inspected", most, attrs | {"long_name": "the largest possible unit_weight"}),
     }
-    if posterior.scale is not None:
-        scales = [
-            _spread_out(weighted, weighted.scale, n, np.nan) for weighted in _units(posterior)
-        ]
-        of_scale = {"role": WEIGHT, "units": rows.dataset[posterior.scale.name].attrs["units"]}
-        of_scale["long_name"] = f"{posterior.scale.name} of the inspected unit"
+    if scale is not None:
+        scales = [_among_all(unit.rows, unit.scale, n, np.nan) for unit in units]
+        of_scale = {"role": WEIGHT, "units": rows.dataset[scale.name].attrs["units"]}
+        of_scale["long_name"] = f"{scale.name} of the inspected unit"
         variables[UNIT_SCALE] = (both, np.stack(scales), of_scale)
-        laws = [_spread_out(weighted, weighted.scores, n, SCORES) for weighted in _units(posterior)]
-        meaning = f"normal score before, of {posterior.scale.name} of the inspected unit"
-        of_law = attrs | {"long_name": meaning}
-        variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), of_law)
-        variables |= _of_law(posterior, attrs)
+        laws = [_among_all(unit.rows, unit.scores, n, SCORES) for unit in units]
+        meaning = f"normal score before, of {scale.name} of the inspected unit"
+        variables[UNIT_SCORES] = ((*both, SCORE), np.stack(laws), attrs | {"long_name": meaning})
+        variables |= _of_law(posterior, scale.name, attrs)
         meaning = "normal score given the inspections and the rest of the row"
         dataset = dataset.assign_coords(
             {SCORE: (SCORE, SCORES, {"long_name": meaning, "units": "1"})}
@@ -128,38 +124,35 @@ def as_result(
     dataset = dataset.assign(variables).assign_coords(
         inspected=("inspected", list(posterior.units))
     )
-    units, count = len(posterior.units), len(inspections)
-    given = f"given {counted(count, 'inspection')} of {counted(units, 'unit')}"
+    given = f"{counted(len(inspections), 'inspection')} of {counted(len(units), 'unit')}"
     if posterior.only_inspected:
         dataset = dataset.assign_attrs({ONLY_INSPECTED: posterior.only_inspected})
     new_attrs = {
-        "title": f"{_prior_title(rows)}, {given}",
-        INTEGRATED: posterior.scale.name if posterior.scale else "",
+        "title": f"{_prior_title(rows)}, given {given}",
+        INTEGRATED: scale.name if scale else "",
         INSPECTIONS: json.dumps([as_table(inspection) for inspection in inspections]),
         LEDGER: json.dumps([digest(inspection) for inspection in inspections]),
         MODEL_ERROR: float(model_cv),
         NEW_ROWS: new_rows,
-        WORLDS: len(posterior.evidence.log_worlds),
+        WORLDS: posterior.likelihoods.worlds,
         "prior_title": _prior_title(rows),
     }
-    for variable in dataset.variables.values():
+    for name, variable in dataset.variables.items():
         variable.encoding["_FillValue"] = None
-    for name in {UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_PULLS} & {*dataset.variables}:
-        dataset[name].encoding |= _COMPRESSED
+        if name in (UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_PULLS):
+            variable.encoding |= _COMPRESSED
     return dataset.assign_attrs(new_attrs)
 
 
-def _of_law(posterior: Posterior, attrs: dict[str, Any]) -> dict[str, Any]:
+def _of_law(posterior: Posterior, scale: str, attrs: dict[str, Any]) -> dict[str, Any]:
     """Return the variables of the law of an input that all units share."""
     if (law := posterior.law) is None:
         return {}
-    assert posterior.scale is not None
-    of_pulls = attrs | {"long_name": f"pull on terms of the law of {posterior.scale.name}"}
     pulls = posterior.pulls
-    of_pulls[ROWS] = len(pulls)
+    of_pulls = attrs | {"long_name": f"pull on terms of the law of {scale}", ROWS: len(pulls)}
     of_terms = attrs | {"long_name": "terms in the row"}
-    of_scores = attrs | {"long_name": f"normal score before, of {posterior.scale.name}"}
-    units = np.stack([weighted.without_own(pulls) for weighted in _units(posterior)])
+    of_scores = attrs | {"long_name": f"normal score before, of {scale}"}
+    units = np.stack([unit.without_own(pulls) for unit in posterior.units.values()])
     return {
         LAW_PULLS: (("row", "term"), posterior.any_unit.without_own(pulls), of_pulls),
         UNIT_PULLS: (("inspected", "row", "term"), units, of_pulls),
@@ -172,23 +165,17 @@ def prior_of(result: Result) -> Result:
     """Return the rows of a posterior as they were before the inspections."""
     if not result.has_weights:
         return result
+    dataset = result.dataset
     kept = [
-        str(name)
-        for name in result.dataset.data_vars
-        if result.dataset[name].attrs.get("role") == "prior"
+        name for name, column in dataset.data_vars.items() if column.attrs.get("role") == "prior"
     ]
     back = {}
     for name in kept:
-        original = name.removeprefix(PRIOR)
-        back[original] = result.dataset[original].copy(data=result.dataset[name].values)
-    gone = [
-        *kept,
-        *(variable for variable in (*_WEIGHTS, "inspected", SCORE) if variable in result.dataset),
-    ]
-    prior = result.dataset.assign(back).drop_vars(gone)
-    attrs = {
-        name: value for name, value in result.dataset.attrs.items() if name not in _OF_POSTERIOR
-    }
+        original = str(name).removeprefix(PRIOR)
+        back[original] = dataset[original].copy(data=dataset[name].values)
+    weights = [name for name in (*_WEIGHTS, INSPECTED, SCORE) if name in dataset]
+    prior = dataset.assign(back).drop_vars([*kept, *weights])
+    attrs = {name: text for name, text in dataset.attrs.items() if name not in _OF_POSTERIOR}
     prior.attrs = attrs | {"title": _prior_title(result)}
     return Result(prior)
 
@@ -222,7 +209,7 @@ def as_unit(result: AnyResult, label: str) -> xr.Dataset:
     result = Result.of(result)
     if not result.has_weights:
         raise InputError("a unit can be named only of a result of 'uq update'")
-    labels = [str(inspected) for inspected in result.dataset["inspected"].values]
+    labels = [str(inspected) for inspected in result.dataset[INSPECTED].values]
     if label not in labels:
         raise InputError(
             f"unit '{label}' was not inspected{nearest(label, labels)} (allowed: {choices(labels)})"
@@ -250,19 +237,21 @@ def as_unit(result: AnyResult, label: str) -> xr.Dataset:
 
 def _law_of_unit(result: Result, rows: Result, place: int) -> dict[str, Any]:
     """Return the variables of that law for the rows of a unit."""
-    name, law, pulls, inputs = (
-        result.dataset.attrs[INTEGRATED],
-        result.dataset[LAW_SCORES],
-        result.dataset[UNIT_PULLS],
-        inputs_of(rows),
-    )
+    name, inputs = result.dataset.attrs[INTEGRATED], inputs_of(rows)
+    law, pulls = result.dataset[LAW_SCORES], result.dataset[UNIT_PULLS]
     below = cdf_within(inputs.laws[name], rows.dataset[name].values, inputs.bounds[name])
-    follows = terms_at(law.values, ndtri(below))
     return {
         LAW_PULLS: (pulls.dims[1:], pulls.values[place], pulls.attrs),
-        LAW_FOLLOWS: (pulls.dims[1:], follows),
+        LAW_FOLLOWS: (pulls.dims[1:], terms_at(law.values, ndtri(below))),
         LAW_SCORES: law,
     }
+
+
+def every_unit(result: Result) -> Iterator[tuple[str, Result]]:
+    """Yield the rows of a posterior as any unit, labelled "", then as each inspected one."""
+    yield "", result
+    for label in map(str, result.dataset[INSPECTED].values):
+        yield label, Result(as_unit(result, label))
 
 
 def inspections_of(result: Result) -> list[Inspection]:
@@ -286,15 +275,13 @@ def _prior_title(result: Result) -> str:
     return str(result.dataset.attrs.get("prior_title", result.dataset.attrs["title"]))
 
 
-def _units(posterior: Posterior) -> list[Weighted]:
-    return list(posterior.units.values())
-
-
-def _spread_out(weighted: Weighted, values: Floats | None, n: int, other: float | Floats) -> Floats:
-    """Return values of the rows of a unit among all rows."""
+def _among_all(
+    places: NDArray[np.intp], values: Floats | None, n: int, other: float | Floats
+) -> Floats:
+    """Return values of some rows among all n rows, another value for the others."""
     filled = np.full((n, *np.shape(other)), other)
     if values is not None:
-        filled[weighted.rows] = values
+        filled[places] = values
     return filled
 
 
@@ -321,7 +308,4 @@ def _rescaled(rows: Result, name: str, values: Floats) -> dict[str, xr.DataArray
 
 def unit_quality(result: Result) -> list[Smoothed]:
     """Return the weights of the rows of a posterior, as any unit and as each inspected one."""
-    units = [as_unit(result, str(label)) for label in result.dataset["inspected"].values]
-    return [
-        weights for rows in (result.dataset, *units) if (weights := weights_of(rows)) is not None
-    ]
+    return [weights for _, rows in every_unit(result) if (weights := rows.weights) is not None]

@@ -7,6 +7,7 @@ from uq.contract import Floats
 from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.likelihood import drawn_measurement
 from uq.learning.posterior import Posterior
+from uq.learning.unit_likelihood import UnitLikelihoods
 
 CAMPAIGNS = 2000
 """Campaigns drawn from the rows."""
@@ -33,18 +34,20 @@ def strangeness(posterior: Posterior, seed: int, model_cv: float) -> float:
     .. [1] G. E. P. Box, "Sampling and Bayes' inference in scientific modelling and robustness", J.
        R. Stat. Soc. A 143, 383-430 (1980).
     """
-    rng = np.random.default_rng((seed, 22))
-    study_rows = np.flatnonzero(posterior.importance.from_study)
-    world = posterior.world[study_rows[rng.integers(len(study_rows), size=CAMPAIGNS)]]
+    likelihoods, rng = posterior.likelihoods, np.random.default_rng((seed, 22))
+    study_rows = np.flatnonzero(likelihoods.from_study)
+    world = likelihoods.world[study_rows[rng.integers(len(study_rows), size=CAMPAIGNS)]]
     common = rng.random(CAMPAIGNS)
     score = np.zeros(CAMPAIGNS + 1)  # the last is that of the real inspections
-    for unit, inspections in enumerate(posterior.likelihoods.inspections):
-        block = posterior.likelihoods.blocks[unit]
-        rows = _rows(block[posterior.importance.from_study[block]], posterior.world, world, rng)
-        uniform = rng.random(CAMPAIGNS)
+    for block, inspections in zip(likelihoods.blocks, likelihoods.inspections, strict=True):
+        rows = _rows(block[likelihoods.from_study[block]], likelihoods.world, world, rng)
+        individual = rng.random(CAMPAIGNS)
+        values = np.ones(CAMPAIGNS)
+        if likelihoods.scale is not None:
+            values = likelihoods.scale.quantiles(common if likelihoods.shares_scale else individual)
         for inspection in inspections:
-            truth = _truth(posterior, inspection, rows, common, uniform)
-            score += _log_probability(posterior, inspection, truth, rng, model_cv)
+            truth = likelihoods.truth(inspection, rows, values[:, None])
+            score += _log_probability(likelihoods, inspection, truth, rng, model_cv)
     return float((score[:-1] <= score[-1] + 1e-9).mean())
 
 
@@ -60,24 +63,8 @@ def _rows(
     return np.asarray(order[first + np.floor(rng.random(len(world)) * (after - first)).astype(int)])
 
 
-def _truth(
-    posterior: Posterior,
-    inspection: Inspection,
-    rows: NDArray[np.intp],
-    common: Floats,
-    individual: Floats,
-) -> Floats:
-    """Return the true value of the observable in each campaign."""
-    look, longer = posterior.looks[inspection], np.ones((len(rows), 1))
-    scale = posterior.scale
-    if scale is not None and look.name in scale.exponents:
-        values = scale.quantiles(individual if scale.is_own else common)
-        longer = (values / scale.drawn[rows])[:, None] ** scale.exponents[look.name]
-    return look.truth(inspection.time, rows, longer)[:, 0]
-
-
 def _log_probability(
-    posterior: Posterior,
+    likelihoods: UnitLikelihoods,
     inspection: Inspection,
     truth: Floats,
     rng: np.random.Generator,
@@ -86,15 +73,13 @@ def _log_probability(
     """Return the log probability of the inspection in each campaign; the real one is last."""
     n = len(truth)
     if inspection.kind is not InspectionKind.MEASURED:
-        log_chance = posterior.looks[inspection].log_likelihood(
-            inspection, truth[:, None], model_cv
-        )[:, 0]
-        chance = np.exp(log_chance)
+        observable = likelihoods.observables[inspection]
+        chance = np.exp(observable.log_likelihood(inspection, truth, model_cv)[:, 0])
         so = rng.random(n) < chance
         share = (chance.sum() + 0.5) / (n + 1)
         return np.append(np.where(so, np.log(share), np.log1p(-share)), np.log(share))
     assert inspection.value is not None
-    values = np.append(drawn_measurement(inspection, truth, rng, model_cv), inspection.value)
+    values = np.append(drawn_measurement(inspection, truth[:, 0], rng, model_cv), inspection.value)
     ordered = np.sort(values[~np.isnan(values)])
     below = np.searchsorted(ordered, values, side="right") / (len(ordered) + 1)
     return np.where(np.isnan(values), 0.0, np.log(2 * np.minimum(below, 1 - below)))

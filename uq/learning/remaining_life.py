@@ -13,7 +13,7 @@ from uq.contract import Output
 from uq.errors import InputError, choices
 from uq.learning.epistemic_band import over_shared
 from uq.learning.inspections import Inspection, InspectionKind
-from uq.learning.observables import look_at, quantities_of
+from uq.learning.observables import observed
 from uq.learning.posterior_result import as_unit, inspections_of, prior_of
 from uq.result.elements import Element
 from uq.result.result import Result
@@ -126,8 +126,8 @@ def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
         When a time is negative or not finite.
     """
     check_times(by, "by")
-    inspections, quantities = inspections_of(result), quantities_of(prior_of(result))
-    units = {inspection: look_at(quantities, inspection).time_unit for inspection in inspections}
+    observables = observed(prior_of(result), inspections_of(result))
+    units = {inspection: observable.time_unit for inspection, observable in observables.items()}
     if ONLY_INSPECTED not in result.dataset.attrs:
         yield from _of_unit(result, ANY, _last_seen(units), by)
     for label in map(str, result.dataset["inspected"].values):

@@ -9,7 +9,7 @@ from scipy import special
 
 from uq.assess.posterior_scale import SCORES, terms_at
 from uq.contract import Floats, Mask
-from uq.learning.cell_ends import Allowed, edges_of_rows
+from uq.learning.cell_ends import edges_of_rows
 from uq.learning.cell_masses import masses
 from uq.learning.evidence import Evidence
 from uq.learning.integrated_input import IntegratedScale
@@ -20,13 +20,11 @@ from uq.result.nesting import Nesting
 from uq.stats.importance_weights import Smoothed, smoothed
 from uq.stats.intervals import Replicates, replicates_of_some
 
-Rows = NDArray[np.intp]
-
 _HUGE = 700.0
 
 
 @dataclass(frozen=True)
-class Weighted:
+class WeightedRows:
     """Rows that stand for a unit.
 
     Attributes
@@ -43,7 +41,7 @@ class Weighted:
         By how much each row moves that law as an inspected unit.
     """
 
-    rows: Rows
+    rows: NDArray[np.intp]
     weights: Smoothed
     scale: Floats | None
     scores: Floats | None = None
@@ -64,29 +62,28 @@ class Weighted:
 def uninspected(
     log_rows: Floats,
     evidence: Evidence,
-    scale: IntegratedScale | None,
+    likelihoods: UnitLikelihoods,
     place: Nesting,
     part: Replicates,
-    allowed: Allowed | None,
     law: SharedLaw | None,
-) -> Weighted:
+) -> WeightedRows:
     """Return all rows, as units that share their world with the inspected ones.
 
     Rows of a sample with the same law of the integrated input have the same value of it.
     """
-    rows = np.arange(len(log_rows))
+    rows, scale = np.arange(len(log_rows)), likelihoods.scale
     if scale is None or scale.is_own:
         weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
-        return Weighted(rows, weights, None if scale is None else scale.drawn)
+        return WeightedRows(rows, weights, None if scale is None else scale.drawn)
     grid = evidence.grids[0]
-    edges = edges_of_rows(grid, log_rows > -np.inf, allowed)
+    edges = edges_of_rows(grid, log_rows > -np.inf, partial(_allowed_in_world, likelihoods, scale))
     worth = masses(grid, edges, np.exp(log_rows - log_rows.max()))
     with np.errstate(divide="ignore"):
         weights = _smoothed_alike(np.log(worth.sum(axis=1)), place, part)
     at = in_order(place.samples)[place.sample]
     drawn = prior_places(edges, worth, at[:, None])[:, 0].copy()
     terms = None if law is None else terms_at(law.scores, special.ndtri(drawn))
-    return Weighted(rows, weights, scale.quantiles(drawn), terms=terms)
+    return WeightedRows(rows, weights, scale.quantiles(drawn), terms=terms)
 
 
 def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
@@ -99,50 +96,59 @@ def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoot
 
 
 def inspected(
-    evidence: Evidence,
     unit: int,
+    evidence: Evidence,
     likelihoods: UnitLikelihoods,
-    world: Rows,
-    scale: IntegratedScale | None,
     part: Replicates,
     law: SharedLaw | None,
-) -> Weighted:
+) -> WeightedRows:
     """Return the rows that stand for an inspected unit.
 
     Where units have no world in common but all rows, the likelihood bounds their weights: no value
     of the integrated input that the grid leaves out makes all else more probable than it does.
     """
-    rows, grid = likelihoods.blocks[unit], evidence.grids[unit]
-    size = np.bincount(world[rows], minlength=len(evidence.rest[unit]))
+    rows, grid, scale = likelihoods.blocks[unit], evidence.grids[unit], likelihoods.scale
+    world, rest = likelihoods.world[rows], evidence.rest[unit]
+    size = np.bincount(world, minlength=len(rest))
     of_unit = likelihoods.log_likelihood(unit, grid.values)
-    joint = evidence.rest[unit][world[rows]] + of_unit - np.log(size[world[rows]])[:, None]
-    allowed = None if scale is None else partial(_allowed, likelihoods, unit, scale)
+    joint = rest[world] + of_unit - np.log(size[world])[:, None]
+    allowed = None if scale is None else partial(_allowed_in_unit, likelihoods, scale, unit)
     edges = edges_of_rows(grid, of_unit > -np.inf, allowed)
     top = joint.max()
     worth = masses(grid, edges, np.exp(joint - top))
     of_rows = worth.sum(axis=1)
     most = np.inf
-    if len(evidence.rest[unit]) == 1:  # with several worlds, others make some rows count
-        all_else = special.logsumexp(evidence.rest[unit]) - np.log((grid.high - grid.low) * size[0])
+    if len(rest) == 1:  # with several worlds, others make some rows count
+        all_else = special.logsumexp(rest) - np.log((grid.high - grid.low) * size[0])
         log_most = likelihoods.log_most(unit) + all_else - top - np.log(of_rows.mean())
         most = float(np.exp(min(log_most, _HUGE)))
-    kept = np.isin(np.arange(len(world)), rows)
+    kept = np.isin(np.arange(len(likelihoods.world)), rows)
     with np.errstate(divide="ignore"):
         weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
     if scale is None:
-        return Weighted(rows, weights, None)
+        return WeightedRows(rows, weights, None)
     of_law = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
     places = prior_places(edges, worth, np.column_stack([in_order_of_weight(of_rows), of_law]))
     scores = np.asarray(special.ndtri(places[:, 1:]))
-    weighted = Weighted(rows, weights, scale.quantiles(places[:, 0].copy()), scores)
+    weighted = WeightedRows(rows, weights, scale.quantiles(places[:, 0].copy()), scores)
     if law is None:
         return weighted
     terms = worth @ law.terms / np.where(of_rows > 0, of_rows, 1.0)[:, None]
     return replace(weighted, terms=terms, pulls=pulls_of(unit, of_unit, evidence, law))
 
 
-def _allowed(
-    likelihoods: UnitLikelihoods, unit: int, scale: IntegratedScale, places: Floats
+def _allowed_in_unit(
+    likelihoods: UnitLikelihoods, scale: IntegratedScale, unit: int, places: Floats
 ) -> Mask:
     """Return where the inspections of a unit allow a value of the input in each row, shape (m,)."""
     return likelihoods.log_likelihood(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf
+
+
+def _allowed_in_world(likelihoods: UnitLikelihoods, scale: IntegratedScale, places: Floats) -> Mask:
+    """Return where inspections allow values of an input that the units of a world share, (n,)."""
+    values, world = scale.quantiles(places)[:, None], likelihoods.world
+    possible = np.ones(likelihoods.worlds, dtype=bool)
+    for unit, rows in enumerate(likelihoods.blocks):
+        agree = likelihoods.log_likelihood(unit, values[rows])[:, 0] > -np.inf
+        possible &= np.bincount(world[rows], agree, likelihoods.worlds) > 0
+    return np.asarray(possible[world])

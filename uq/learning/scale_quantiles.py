@@ -1,15 +1,13 @@
 """Quantiles of the integrated input in each row, of its law given the inspections."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uq.contract import Floats
-
-Places = NDArray[np.intp]
+from uq.learning.cell_masses import Places
 
 _GOLDEN = (5**0.5 - 1) / 2
-_TINY = 2.0**-53
-_FLAT, _STEEPEST = 1e-6, 30.0
+_LEAST = 2.0**-53
+_FLAT, _MOST_TILT = 1e-6, 30.0
 
 
 def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:
@@ -40,7 +38,7 @@ def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:
     within = _tilted(np.nan_to_num(within).clip(0.0, 1.0), edges, worth, row, node)
     start = edges[row, node]
     places = start + within * (edges[row, node + 1] - start)
-    return np.where(total > 0, places.clip(_TINY, 1 - _TINY), at)
+    return np.where(total > 0, places.clip(_LEAST, 1 - _LEAST), at)
 
 
 def in_order(count: int) -> Floats:
@@ -67,7 +65,7 @@ def _tilted(within: Floats, edges: Floats, worth: Floats, row: Places, node: Pla
         ratio = (worth[row, high] / worth[row, low]) * (lengths[0] / lengths[1])
         rise = np.log(ratio) / (middles[1] - middles[0])
         wide = edges[row, node + 1] - edges[row, node]
-        tilt = (wide * rise).clip(-_STEEPEST, _STEEPEST)
+        tilt = (wide * rise).clip(-_MOST_TILT, _MOST_TILT)
         moved = np.log1p(within * np.expm1(tilt)) / tilt
     return np.where(np.isfinite(tilt) & (np.abs(tilt) > _FLAT), moved, within)
 

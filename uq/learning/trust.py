@@ -1,11 +1,11 @@
 """Diagnosis of whether the rows of a result can represent a posterior."""
 
-from collections.abc import Iterator
 from math import ceil
 
 import numpy as np
 
-from uq.learning.posterior import Posterior, Weighted
+from uq.learning.posterior import Posterior
+from uq.learning.rows_as_units import WeightedRows
 from uq.stats.importance_weights import DOUBTFUL, refusal, rows_to_carry_little
 from uq.stats.weighted_means import FEW
 from uq.text.numbers import percent
@@ -24,34 +24,38 @@ _OPEN = 0.01
 
 def censoring(posterior: Posterior) -> str:
     """Return that censored lives leave open what inspections saw, or ""."""
-    return next(_censored(posterior), "")
-
-
-def distrust(posterior: Posterior) -> str:
-    """Return why the weights of a posterior cannot be trusted, or ""."""
-    return next(_reasons(posterior), "")
-
-
-def _censored(posterior: Posterior) -> Iterator[str]:
     for unit, (label, weighted) in enumerate(posterior.units.items()):
-        scale = None if posterior.scale is None else posterior.scale.drawn[weighted.rows]
-        before = posterior.likelihoods.bounded(unit, scale)
-        after = posterior.likelihoods.bounded(unit, weighted.scale)
-        counted = np.exp(posterior.likelihoods.log_before(unit))
+        likelihoods = posterior.likelihoods
+        before, after = likelihoods.bounded(unit), likelihoods.bounded(unit, weighted.scale)
+        counted = np.exp(likelihoods.log_before(unit))
         share = max(
             np.average(before, weights=counted), np.average(after, weights=weighted.weights.weights)
         )
         if share > _OPEN:
-            yield (
+            return (
                 f"unit {label}: {percent(share)} of the rows were censored before what its"
                 f" inspections found{_or_stopped(posterior, label)}"
             )
+    return ""
+
+
+def distrust(posterior: Posterior) -> str:
+    """Return why the weights of a posterior cannot be trusted, or ""."""
+    weighted_by_name = {"what all units share": posterior.any_unit}
+    weighted_by_name |= {f"unit {label}": weighted for label, weighted in posterior.units.items()}
+    fewest_first = sorted(weighted_by_name.items(), key=lambda pair: pair[1].weights.effective)
+    return next(
+        (f"{name}: {why}" for name, weighted in fewest_first if (why := _why(weighted))), ""
+    )
 
 
 def _or_stopped(posterior: Posterior, label: str) -> str:
     """Return the remedy where rows are censored before the inspections of a unit."""
-    looks = [look for inspection, look in posterior.looks.items() if inspection.unit == label]
-    stopped = [look.depths.settled & ~look.censored for look in looks if look.depths is not None]
+    stopped = (
+        observable.depths.settled & ~observable.censored
+        for inspection, observable in posterior.likelihoods.observables.items()
+        if inspection.unit == label and observable.depths is not None
+    )
     if not any(rows.any() for rows in stopped):
         return "; run the study with a longer horizon"
     return (
@@ -60,18 +64,7 @@ def _or_stopped(posterior: Posterior, label: str) -> str:
     )
 
 
-def _reasons(posterior: Posterior) -> Iterator[str]:
-    """Yield the reason for each unit, from the fewest effective rows."""
-    weighted_by_name = {"what all units share": posterior.any_unit}
-    weighted_by_name |= {f"unit {label}": weighted for label, weighted in posterior.units.items()}
-    for whose, weighted in sorted(
-        weighted_by_name.items(), key=lambda pair: pair[1].weights.effective
-    ):
-        if why := _why(weighted):
-            yield f"{whose}: {why}"
-
-
-def _why(weighted: Weighted) -> str:
+def _why(weighted: WeightedRows) -> str:
     weights = weighted.weights
     several = "rows" if weights.rows == len(weighted.rows) else "samples"
     if why := refusal(weights.k, weights.rows, HOPELESS):

@@ -1,56 +1,92 @@
 """Likelihood of all inspections of a unit, evaluated for each row that stands for it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats
-from uq.learning.importance import Importance
+from uq.contract import Floats, Mask
+from uq.errors import InputError
+from uq.learning.importance import from_study, importance_of
 from uq.learning.inspections import Inspection
-from uq.learning.integrated_input import IntegratedScale
+from uq.learning.integrated_input import scale_of, shared_inputs
 from uq.learning.likelihood import log_most
-from uq.learning.observables import Look
+from uq.learning.observables import Observable, observed
+from uq.result.result import Result
 
 
 class UnitLikelihoods:
-    """Likelihoods of units, evaluated for their rows and for values of the integrated input.
+    """Likelihoods of the inspected units, given their rows and values of the integrated input.
 
-    What inspections of different units would find in the same rows is computed once.
+    A world is what all units share: a sample, or all rows where nothing is shared but the
+    integrated input. Each inspected unit takes rows of its own in each world. What inspections of
+    different units would find in the same rows is computed once.
 
     Parameters
     ----------
+    rows : Result
+        The independent rows of a result, or samples of several rows.
     inspections : sequence of Inspection
-    looks : dict of Inspection to Look
-    labels : sequence of str
-        The inspected units.
-    blocks : sequence of ndarray of int
-        The rows that stand for each of them.
-    scale : IntegratedScale or None
     model_cv : float
-    importance : Importance
-        Of all rows.
+        Of reality about the model, as for `uq.learning.likelihood.log_likelihood`.
+
+    Attributes
+    ----------
+    labels : list of str
+        The inspected units.
+    inspections : list of list of Inspection
+        Of each of them.
+    observables : dict of Inspection to Observable
+    scale : IntegratedScale or None
+    not_integrated : tuple of str
+        Sentences on inputs that scale what was inspected, but do more.
+    world : ndarray of int, shape (n,)
+        Of each row.
+    worlds : int
+    blocks : list of ndarray of int
+        The rows that stand for each inspected unit.
+    importance : ndarray, shape (n,)
+        Of each row before the inspections.
+    from_study : ndarray of bool, shape (n,)
+        Which rows were drawn from the laws of the study.
+
+    Raises
+    ------
+    InputError
+        When an inspection does not fit the result, or more units are inspected than samples have.
     """
 
-    def __init__(
-        self,
-        inspections: Sequence[Inspection],
-        looks: Mapping[Inspection, Look],
-        labels: Sequence[str],
-        blocks: Sequence[NDArray[np.intp]],
-        scale: IntegratedScale | None,
-        model_cv: float,
-        importance: Importance,
-    ):
+    def __init__(self, rows: Result, inspections: Sequence[Inspection], model_cv: float):
+        self.observables = observed(rows, inspections)
+        self.labels = list(dict.fromkeys(inspection.unit for inspection in inspections))
+        count, place = len(self.labels), rows.nesting
+        if count > place.units:
+            raise InputError(
+                f"{count} units are inspected, but a sample of this result has {place.units}:"
+                f" set [design] units = {count}"
+            )
         self.inspections = [
             [inspection for inspection in inspections if inspection.unit == label]
-            for label in labels
+            for label in self.labels
         ]
-        self._looks, self.blocks, self._scale, self._cv = looks, blocks, scale, model_cv
-        self._log_before = np.log(importance.of_rows)
-        self._log_most = np.log(importance.most)
+        self.scale, self.not_integrated = scale_of(rows, list(self.observables.values()))
+        self.world, self.worlds = np.zeros(len(rows), np.intp), 1
+        if shared_inputs(rows, self.scale):
+            self.world, self.worlds = place.sample, place.samples
+        number = np.arange(len(rows))
+        self.blocks = [number] * count
+        if self.worlds > 1:
+            self.blocks = [number[place.unit % count == unit] for unit in range(count)]
+        self.importance, self.from_study = importance_of(rows), from_study(rows)
+        self._log_before = np.log(self.importance)
+        self._cv = model_cv
         self._values = np.empty(0)
         self._truths: dict[tuple[str, float | None, int], Floats] = {}
+
+    @property
+    def shares_scale(self) -> bool:
+        """Whether all units share the integrated input."""
+        return self.scale is not None and not self.scale.is_own
 
     def log_likelihood(self, unit: int, values: Floats) -> Floats:
         """Return the logarithm of the likelihood and of what each row counts, shape (rows, g).
@@ -68,44 +104,48 @@ class UnitLikelihoods:
 
     def of_inspection(self, inspection: Inspection, unit: int, values: Floats) -> Floats:
         """Return the logarithm of the likelihood of a single inspection, shape (rows, g)."""
-        truth = self._truth(self._looks[inspection], inspection.time, self.blocks[unit], values)
-        return self._looks[inspection].log_likelihood(inspection, truth, self._cv)
+        observable, rows = self.observables[inspection], self.blocks[unit]
+        if not np.array_equal(values, self._values):
+            self._values, self._truths = values, {}
+        key = observable.name, inspection.time, int(rows[0])
+        if key not in self._truths:
+            self._truths[key] = self.truth(inspection, rows, values)
+        return observable.log_likelihood(inspection, self._truths[key], self._cv)
+
+    def truth(self, inspection: Inspection, rows: NDArray[np.intp], values: Floats) -> Floats:
+        """Return the true value of what was inspected in some rows, shape (rows, g)."""
+        observable = self.observables[inspection]
+        return observable.truth(inspection.time, rows, self._longer(observable, rows, values))
 
     def log_most(self, unit: int) -> float:
         """Return an upper bound of `log_likelihood` over all rows and values."""
+        importance = np.log(len(self.from_study) / int(self.from_study.sum()))
         return float(
-            self._log_most
+            importance
             + sum(log_most(inspection, self._cv) for inspection in self.inspections[unit])
         )
 
-    def bounded(self, unit: int, scale: Floats | None) -> NDArray[np.bool_]:
+    def bounded(self, unit: int, scale: Floats | None = None) -> Mask:
         """Return in which rows a censored life leaves open what was seen, shape (rows,).
 
         Parameters
         ----------
         unit : int
-        scale : ndarray, shape (rows,), or None
-            The integrated input of each row.
+        scale : ndarray, shape (rows,), optional
+            The integrated input of each row, if it is not as drawn.
         """
         rows = self.blocks[unit]
-        is_open = np.zeros(len(rows), dtype=bool)
+        is_open, as_drawn = np.zeros(len(rows), dtype=bool), np.ones((len(rows), 1))
         for inspection in self.inspections[unit]:
-            look, longer = self._looks[inspection], np.ones((len(rows), 1))
-            if self._scale is not None and scale is not None and look.name in self._scale.exponents:
-                longer = (scale / self._scale.drawn[rows])[:, None] ** self._scale.exponents[
-                    look.name
-                ]
-            is_open |= look.bounded(inspection, rows, longer, self._cv)[:, 0]
+            observable, longer = self.observables[inspection], as_drawn
+            if scale is not None:
+                longer = self._longer(observable, rows, scale[:, None])
+            is_open |= observable.bounded(inspection, rows, longer, self._cv)[:, 0]
         return is_open
 
-    def _truth(
-        self, look: Look, time: float | None, rows: NDArray[np.intp], values: Floats
-    ) -> Floats:
-        if not np.array_equal(values, self._values):
-            self._values, self._truths = values, {}
-        key = look.name, time, int(rows[0])
-        if key not in self._truths:
-            none = np.ones((len(rows), values.shape[-1]))
-            longer = none if self._scale is None else self._scale.longer(look, rows, values)
-            self._truths[key] = look.truth(time, rows, longer)
-        return self._truths[key]
+    def _longer(self, observable: Observable, rows: NDArray[np.intp], values: Floats) -> Floats:
+        """Return by which factor lives of rows are longer with other values, shape (rows, g)."""
+        if self.scale is None or observable.name not in self.scale.exponents:
+            return np.ones((len(rows), values.shape[-1]))
+        ratio = values / self.scale.drawn[rows, None]
+        return np.asarray(ratio ** self.scale.exponents[observable.name])

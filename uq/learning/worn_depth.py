@@ -59,10 +59,6 @@ class WornDepths:
         """Whether each row's wear stops before the last depth, shape (n,)."""
         return np.asarray(np.isposinf(self.lives).any(axis=1))
 
-    def without(self, place: int) -> "WornDepths":
-        """Return the curves as they would be had this depth not been declared."""
-        return WornDepths(np.delete(self.depths, place), np.delete(self.lives, place, axis=1))
-
     def error(self) -> Floats:
         """Return how wrong each row is about a depth left out, relative, shape (n,).
 
@@ -72,7 +68,8 @@ class WornDepths:
         worst = np.full(len(self.lives), np.nan)
         whole = np.isfinite(self.lives).all(axis=1)
         for place in range(len(self.depths) - 1):
-            guess = self.without(place).at(self.lives[:, place : place + 1])[:, 0]
+            others = WornDepths(np.delete(self.depths, place), np.delete(self.lives, place, axis=1))
+            guess = others.at(self.lives[:, place : place + 1])[:, 0]
             off = np.abs(guess / self.depths[place] - 1)
             worst[whole] = np.fmax(worst, off)[whole]
         return worst

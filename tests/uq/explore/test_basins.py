@@ -16,7 +16,7 @@ import xarray as xr
 import uq
 from uq.contract import Model, Output, Parameter, Status
 from uq.errors import InputError
-from uq.explore.attractors import AttractorNumber, attractors
+from uq.explore.attractors import attractors
 
 
 class Start(NamedTuple):
@@ -117,7 +117,7 @@ def test_outputs_with_dimensions_keep_them():
 
 def of(*outputs, tolerance=0.01):
     columns = [np.asarray(values, float) for values in outputs]
-    compared = [AttractorNumber(values, np.zeros(len(values)), tolerance) for values in columns]
+    compared = [(values, np.zeros(len(values)), tolerance) for values in columns]
     return attractors(compared, len(columns[0])).tolist()
 
 
@@ -138,7 +138,7 @@ def test_a_gap_may_show_only_after_another_output_has_parted_the_rows():
 def test_values_within_their_errors_are_alike():
     values, tolerance = np.array([1.0, 1.1, 9.0]), 1e-3
     for error, expected in ((0.0, [0, 1, 2]), (0.02, [0, 0, 1])):
-        compared = AttractorNumber(values, np.full(3, error), tolerance)
+        compared = (values, np.full(3, error), tolerance)
         assert attractors([compared], 3).tolist() == expected
 
 

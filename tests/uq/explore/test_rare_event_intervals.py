@@ -7,7 +7,7 @@ from scipy import stats
 
 from uq.explore.design_points import design_points, drawn_around
 from uq.explore.rare_events import rare_event
-from uq.explore.subset_simulation import Found, subset_interval, subset_simulation
+from uq.explore.subset_simulation import SubsetReplicate, subset_interval, subset_simulation
 from uq.stats.intervals import log_scatter_interval
 
 
@@ -53,10 +53,10 @@ def test_intervals_on_a_plateau_hold_the_truth(share):
 def test_replicates_that_never_got_there_count_with_the_level_they_reached():
     inside = np.zeros((1, 2))
     there = [
-        Found(probability, 5, inside, 1e-4, 0, "event")
+        SubsetReplicate(probability, 5, inside, 1e-4, 0, "event")
         for probability in (1e-6, 2e-6, 1.5e-6, 1.2e-6)
     ]
-    stuck = [Found(0.0, 3, inside, 1e-3, 0, "plateau")]
+    stuck = [SubsetReplicate(0.0, 3, inside, 1e-3, 0, "plateau")]
     low, high = subset_interval(there + stuck, 1000)
     assert 0 <= low < 1e-6 and 2e-4 < high <= 1 - 0.025 ** (1 / 5000)
 

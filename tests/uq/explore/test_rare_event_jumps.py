@@ -8,7 +8,7 @@ from scipy import stats
 
 from uq.cli.rare_event import as_json, show
 from uq.explore.rare_events import _Outcome, estimate_of, rare_event
-from uq.explore.subset_simulation import Found, disagreement, subset_simulation
+from uq.explore.subset_simulation import SubsetReplicate, disagreement, subset_simulation
 from uq.explore.wide_search import WideSearch, wide_search
 from uq.stats.intervals import log_scatter_interval
 
@@ -68,7 +68,8 @@ def of_cliff(u):
 
 def replicates(*estimates):
     return [
-        Found(estimate, 6, np.zeros((1, 2)), 10 * estimate, 0, "event") for estimate in estimates
+        SubsetReplicate(estimate, 6, np.zeros((1, 2)), 10 * estimate, 0, "event")
+        for estimate in estimates
     ]
 
 

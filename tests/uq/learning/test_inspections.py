@@ -3,12 +3,11 @@
 from pathlib import Path
 
 import pytest
-import xarray as xr
 
 from uq.errors import InputError
-from uq.learning import inspection_log
+from uq.learning.inspection_log import all_of
+from uq.learning.inspection_log import read as read_file
 from uq.learning.inspections import Inspection, InspectionKind, read_inspections
-from uq.result.result import Result
 
 HEAD = "unit,time,output,kind,value,sd,cv,detection_50,detection_90\n"
 FILE = Path("found.csv")
@@ -151,26 +150,24 @@ def test_tables_of_a_toml_file():
     FILE.with_suffix(".toml").write_text(
         '[[inspection]]\nunit = "A"\noutput = "life"\nkind = "survived"\ntime = 3.15e7\n'
     )
-    assert inspection_log.read("found.toml") == [
-        Inspection("A", "life", InspectionKind.SURVIVED, 3.15e7)
-    ]
+    assert read_file("found.toml") == [Inspection("A", "life", InspectionKind.SURVIVED, 3.15e7)]
     FILE.with_suffix(".toml").write_text('[[inspection]]\nunit = "A"\nkind = "lived"\n')
     with pytest.raises(InputError) as refused:
-        inspection_log.read("found.toml")
+        read_file("found.toml")
     assert refused.value.lines[0] == "found.toml, inspection at line 1: output is missing"
     FILE.with_suffix(".toml").write_text(
         '[[inspection]]\nunit = ""\noutput = "life"\nkind = "survived"\ntime = 1\n'
     )
     with pytest.raises(InputError, match="^found.toml, inspection at line 1: unit is missing$"):
-        inspection_log.read("found.toml")
+        read_file("found.toml")
     FILE.with_suffix(".toml").write_text('inspection = [{unit = "A", output = "life"}]')
     with pytest.raises(InputError, match="^found.toml: inspection 1: kind is missing"):
-        inspection_log.read("found.toml")
+        read_file("found.toml")
     FILE.with_suffix(".toml").write_text(
         "# found\n" + BARE + "value = '7e5'\nsd = true\n\n" + BARE + "valeu = 3\n"
     )
     with pytest.raises(InputError) as refused:
-        inspection_log.read("found.toml")
+        read_file("found.toml")
     assert refused.value.lines == (
         "found.toml, inspection at line 2: unit = 1: must be text, in quotes",
         'found.toml, inspection at line 2: value = "7e5": must be a number, without quotes',
@@ -182,15 +179,15 @@ def test_tables_of_a_toml_file():
     for text, why in (("x = 1", "must consist of tables"), ("x = ", "not TOML")):
         FILE.with_suffix(".toml").write_text(text)
         with pytest.raises(InputError, match=f"^found.toml: {why}"):
-            inspection_log.read("found.toml")
+            read_file("found.toml")
     with pytest.raises(InputError, match="^lost.toml: cannot be read"):
-        inspection_log.read("lost.toml")
+        read_file("lost.toml")
 
 
 def test_each_measurement_counts_once_and_none_contradicts_another():
     read("A,2,life,survived,,,,,", "A,2,life,survived,,,,,", "A,1,life,ended,,,,,")
     with pytest.raises(InputError) as refused:
-        inspection_log.all_of(Result(xr.Dataset()), inspection_log.read(FILE))
+        all_of([], read_file(FILE))
     again, *contradictions = refused.value.lines
     assert again == (
         "found.csv, line 3 (unit A, life, survived): already used by found.csv, line 2; a"
