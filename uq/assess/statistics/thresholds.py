@@ -5,7 +5,6 @@ from dataclasses import replace
 from math import nan
 
 from uq.assess.failed_rows import bounded
-from uq.assess.sample import Sample
 from uq.assess.statistic import Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.element import Element
 from uq.stats import estimate_json

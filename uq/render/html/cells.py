@@ -10,8 +10,8 @@ from markupsafe import Markup
 from uq.assess.statistic import Statistic
 from uq.assess.targets import FORMS, split_name
 from uq.render.html.bars import bar
-from uq.stats.estimate_text import failed_bounds_text
 from uq.stats.estimate import Estimate
+from uq.stats.estimate_text import failed_bounds_text
 
 SHARE = "share"
 """The scale of shares: from 0 to 1."""
