@@ -12,8 +12,8 @@ import numpy as np
 
 import uq
 from uq.learning.inspections import Inspection, InspectionKind
+from uq.learning.observables import WornDepths
 from uq.learning.posterior import posterior
-from uq.learning.worn_depth import WornDepths
 from uq.result.result import Result
 from uq.text.literals import read_toml, toml
 

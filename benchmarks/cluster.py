@@ -24,10 +24,10 @@ from benchmarks import children
 from benchmarks.coverage.problems import study_of
 from benchmarks.large import INPUTS, LAWS, OUTPUTS, machine
 from uq.execution import dask_task, resuming
-from uq.execution.dispatch import Dispatcher
+from uq.execution.clusters import remote_workers
 from uq.execution.environment import command, inherited
+from uq.execution.executor import Dispatcher
 from uq.execution.options import RunOptions
-from uq.execution.remote_cluster import remote_workers
 from uq.result.workload import workload_of
 from uq.study.evaluate import evaluate
 

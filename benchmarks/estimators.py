@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uq.indices.index import S1, ST
-from uq.indices.sample import DesignSample
+from uq.indices.method import DesignSample
 from uq.indices.sobol import first_order, sobol_indices, total_order
 from uq.sampling.designs import DESIGNS
 from uq.stats.quantile_functions import normal

@@ -147,8 +147,8 @@ def test_the_platform_depends_one_way():
 
 
 GIVEN_BY_USERS = {
-    "uq.explore.grid",
-    "uq.explore.row_again",
+    "uq.explore.basins",
+    "uq.explore.single_rows",
     "uq.execution.single_row",
     "uq.execution.child",
     "uq.execution.loading",
@@ -158,10 +158,10 @@ GIVEN_BY_USERS = {
 
 
 def test_code_is_reached_by_what_a_user_gave_alone():
-    reach = {"uq.study.installed_models.model_at", "uq.machines.machine.machine_of"}
+    reach = {"uq.study.installed_models.model_at", "uq.machines.program.machine_of"}
     reach |= {"uq.machines.server.server_model", "uq.machines.program.program_of"}
     importers = {name for name, names in edges("uq").items() if names & reach}
-    assert importers == GIVEN_BY_USERS | {"uq.study.installed_models", "uq.machines.machine"}
+    assert importers == GIVEN_BY_USERS | {"uq.study.installed_models"}
 
 
 def test_a_worker_imports_no_more_than_it_needs():

@@ -21,8 +21,7 @@ from uq.render.figures.catalogue import Entry
 from uq.render.figures.panel import column, finish
 from uq.render.html.page import page
 from uq.result.result import Result
-from uq.sampling.design import Design
-from uq.sampling.designs import DESIGNS
+from uq.sampling.designs import DESIGNS, Design
 from uq.sampling.law import Law, Positive
 from uq.sampling.laws import LAWS
 from uq.sampling.unit_cube import monte_carlo

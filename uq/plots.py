@@ -9,7 +9,7 @@ from pathlib import Path
 
 from uq.assess.findings import Findings
 from uq.errors import InputError
-from uq.files.paths import refuse_standard_output
+from uq.files.whole_files import refuse_standard_output
 from uq.render.figures import subjects
 from uq.render.figures.catalogue import Entry, drawables
 from uq.render.figures.convergence_plot import convergence as convergence
@@ -18,10 +18,9 @@ from uq.render.figures.distribution_plots import histogram as histogram
 from uq.render.figures.distribution_plots import histogram_by_regime as histogram_by_regime
 from uq.render.figures.distribution_plots import lifetime as lifetime
 from uq.render.figures.distribution_plots import quantile_table as quantile_table
-from uq.render.figures.event_plot import event_probability as event_probability
 from uq.render.figures.figure import write
-from uq.render.figures.index_curve_plot import index_curves as index_curves
 from uq.render.figures.index_plot import index_bars as index_bars
+from uq.render.figures.index_plot import index_curves as index_curves
 from uq.render.figures.input_plot import inputs as inputs
 from uq.render.figures.motion_plot import history as history
 from uq.render.figures.motion_plot import motion as motion
@@ -32,7 +31,8 @@ from uq.render.figures.response_plot import bifurcation as bifurcation
 from uq.render.figures.response_plot import curve as curve
 from uq.render.figures.scatter_plot import pairs as pairs
 from uq.render.figures.scatter_plot import scatter as scatter
-from uq.render.figures.shares_plot import shares as shares
+from uq.render.figures.share_plots import event_probability as event_probability
+from uq.render.figures.share_plots import shares as shares
 from uq.result.result import Result
 
 FIGURES: dict[str, Entry] = {

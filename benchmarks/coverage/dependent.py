@@ -22,7 +22,7 @@ from uq.assess.design_sample import sample_of
 from uq.contract import Model, Output, Parameter
 from uq.indices.index import SHAPLEY, RefusedError
 from uq.indices.methods import METHODS
-from uq.indices.paths import controlled, parts_of
+from uq.indices.shapley import controlled, parts_of
 from uq.result.result import Result
 from uq.stats.estimate import NOTHING
 from uq.stats.intervals import scatter_interval

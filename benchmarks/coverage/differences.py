@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.coverage.problems import computed, study_of, with_seed
 from benchmarks.coverage.tally import Tally
 from uq.assess.comparison import comparison
-from uq.assess.summary_json import comparison_facts
+from uq.assess.summary_facts import comparison_facts
 from uq.result.result import Result
 
 UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}

@@ -10,7 +10,7 @@ from benchmarks.coverage.tally import Tally
 from uq.assess.design_sample import sample_of
 from uq.assess.sensitivities import few_hits
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_facts
+from uq.assess.summary_facts import summary_facts
 from uq.assess.targets import IndexTarget
 from uq.assess.two_fidelities import with_twin
 from uq.indices.index import RefusedError

@@ -19,10 +19,9 @@ from benchmarks.coverage.problems import (
 )
 from benchmarks.coverage.tally import Tally
 from uq.assess.two_fidelities import with_twin
-from uq.explore.design_points import design_points, drawn_around
+from uq.explore.importance_sampling import design_points, drawn_around, wide_search
 from uq.explore.rare_events import ESTIMATORS, estimate_of
 from uq.explore.subset_simulation import subset_interval, subset_simulation
-from uq.explore.wide_search import wide_search
 from uq.result.result import Result
 from uq.stats.estimate import NOTHING
 from uq.stats.intervals import UNKNOWN, log_scatter_interval

@@ -8,8 +8,8 @@ from benchmarks.coverage.tally import Tally
 from uq.assess.answer.rankings import unexplained
 from uq.indices.index import S1, RefusedError
 from uq.indices.measures import first_order
+from uq.indices.method import DesignSample
 from uq.indices.methods import METHODS
-from uq.indices.sample import DesignSample
 from uq.stats.intervals import scatter_interval
 
 ROWS = (100, 300, 1000, 4000)

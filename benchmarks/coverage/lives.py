@@ -12,7 +12,7 @@ from benchmarks.coverage.tally import Tally
 from uq.assess.life_fit import fits_of
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_facts
+from uq.assess.summary_facts import summary_facts
 from uq.assess.survival import survival
 from uq.result.elements import elements_of
 from uq.result.result import Result

@@ -17,7 +17,7 @@ from benchmarks.coverage.problems import Inputs, Settings, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.assess.level_shares import by_level
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_facts
+from uq.assess.summary_facts import summary_facts
 from uq.contract import Model, Output
 from uq.result.result import Result
 from uq.stats.variance_components import nested_shares

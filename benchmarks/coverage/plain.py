@@ -17,7 +17,7 @@ from benchmarks.coverage.problems import (
 )
 from benchmarks.coverage.tally import Tally
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_facts
+from uq.assess.summary_facts import summary_facts
 from uq.result.result import Result
 
 QUANTILES = (0.05, 0.5, 0.95)

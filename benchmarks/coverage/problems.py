@@ -9,7 +9,7 @@ from scipy import stats
 from scipy.optimize import brentq
 
 from uq.assess.sensitivities import sensitivities
-from uq.assess.sensitivity_json import sensitivity_facts
+from uq.assess.sensitivity_table import sensitivity_facts
 from uq.contract import Model, Output, Parameter
 from uq.result import result_file
 from uq.result.result import Result

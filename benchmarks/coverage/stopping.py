@@ -25,8 +25,8 @@ from uq.assess import stopping
 from uq.assess.design_sample import sample_of
 from uq.contract import Output
 from uq.indices.index import S1, SHAPLEY, ST, RefusedError
+from uq.indices.method import DesignSample
 from uq.indices.methods import METHODS
-from uq.indices.sample import DesignSample
 from uq.indices.sobol import sobol_indices
 from uq.result.element import Element
 from uq.result.result import Result

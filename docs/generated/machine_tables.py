@@ -7,7 +7,7 @@ from uq.contract import Status
 from uq.study.installed_models import find_model, model_names, module_of
 from uq.study.reading import read_study_text
 from uq.text.numbers import listed
-from uq.text.symbols import readable
+from uq.text.units import readable
 
 from .markdown import formula, interval, minus, table, unit, value
 

@@ -8,10 +8,8 @@ from pydantic_core import PydanticUndefined
 from uq.assess.statistics.table import STATISTICS
 from uq.indices.methods import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.plots import FIGURES
-from uq.sampling.design import Design
-from uq.sampling.designs import DESIGNS
+from uq.sampling.designs import DESIGNS, PLAIN, Design
 from uq.sampling.laws import LAWS
-from uq.sampling.layouts import PLAIN
 from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyTable, Tied, Until
 
 from .markdown import table, value

@@ -7,8 +7,8 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from uq.render.figures.figure import WIDTH, styled
 from uq.render.figures.panel import roomy
-from uq.render.figures.style import WIDTH, styled
 from uq.render.figures.words import typeset
 
 DOCS = Path(__file__).parents[1]

@@ -23,7 +23,7 @@ from matplotlib import pyplot
 import uq as public
 from uq import plots
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_facts
+from uq.assess.summary_facts import summary_facts
 from uq.cli.summary_tables import show_summary
 from uq.errors import InputError
 from uq.render.html.page import page

@@ -14,7 +14,7 @@ from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
 
 from uq.errors import InputError, RunError
-from uq.execution import remote_cluster, runner
+from uq.execution import clusters, runner
 from uq.execution.workers import Workers
 
 
@@ -151,7 +151,7 @@ def test_a_chunk_that_loses_its_worker_too_often_is_halved(start, study_of, monk
 
 
 def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, injected):
-    monkeypatch.setattr(remote_cluster, "_REMOTE_SECONDS", 2)
+    monkeypatch.setattr(clusters, "_REMOTE_SECONDS", 2)
     there = start()
 
     def kill(progress):
@@ -168,7 +168,7 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, i
 
 
 def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch, injected):
-    monkeypatch.setattr(remote_cluster, "_WORKERLESS_SECONDS", 2.0)
+    monkeypatch.setattr(clusters, "_WORKERLESS_SECONDS", 2.0)
     there = start()
 
     def kill(progress):

@@ -13,7 +13,7 @@ import pytest
 from own_machines import PAD, PAD_PROGRAM, run_program
 
 from uq.contract import Status
-from uq.machines.row_folders import Folders, size_of
+from uq.machines.row_resources import Folders, size_of
 from uq.study.installed_models import model_at
 
 
@@ -55,8 +55,8 @@ def test_a_hostile_program_costs_its_rows_only(uq, write_program, folder, line):
 
 def test_a_program_that_floods_the_disk_is_ended(write_program, folder, monkeypatch):
     write_program("#!/bin/sh\nexec head -c 10000000 /dev/zero\n")
-    monkeypatch.setattr("uq.machines.child_processes._adopting", True)
-    monkeypatch.setattr("uq.machines.child_processes.LARGEST", 100_000)
+    monkeypatch.setattr("uq.machines.row_resources._adopting", True)
+    monkeypatch.setattr("uq.machines.row_resources.LARGEST", 100_000)
     # Those of this process are not ended.
     monkeypatch.setattr("uq.machines.program.end_descendants", lambda: None)
     model = model_at("machine.toml")
@@ -73,7 +73,7 @@ def test_a_program_that_floods_the_disk_is_ended(write_program, folder, monkeypa
 def test_a_program_that_fills_the_disk_with_files_is_ended(write_program, monkeypatch):
     many = "i=0; while :; do head -c 9999 /dev/zero > f$i; i=$((i+1)); done"
     write_program(f"#!/bin/sh\n{many}\n")
-    monkeypatch.setattr("uq.machines.child_processes.LARGEST", 1_000_000)
+    monkeypatch.setattr("uq.machines.row_resources.LARGEST", 1_000_000)
     monkeypatch.setattr("uq.machines.program._LOOK_SECONDS", 0.1)
     model = model_at("machine.toml")
     x, seed = np.array([[1.0, 3.0]]), np.zeros(1, np.uint64)
@@ -83,7 +83,7 @@ def test_a_program_that_fills_the_disk_with_files_is_ended(write_program, monkey
 
 
 def test_of_many_failed_rows_little_is_kept(folder, monkeypatch):
-    monkeypatch.setattr("uq.machines.row_folders._MOST_KEPT", 5000)
+    monkeypatch.setattr("uq.machines.row_resources._MOST_KEPT", 5000)
     with suppress(ValueError), Folders(folder / "rows").row([1.0]) as row_folder:
         for i in range(9):
             (row_folder / f"large{i}").write_bytes(bytes(1000))

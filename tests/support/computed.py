@@ -7,7 +7,7 @@ import numpy as np
 
 from uq.assess.comparison import comparison
 from uq.assess.summary import summarise
-from uq.assess.summary_json import comparison_facts, summary_facts
+from uq.assess.summary_facts import comparison_facts, summary_facts
 from uq.result.result import Result
 from uq.result.result_file import build
 from uq.study import row_sampling

@@ -2,25 +2,167 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from uq.assess import targets
-from uq.assess.joint_targets import wholes
 from uq.assess.targets import (
+    FORMS,
     IndexTarget,
     canonical,
     category_targets,
     lightened,
+    number_of,
     split_name,
     threshold_text,
+    transformed,
     with_tail_note,
 )
 from uq.errors import InputError, choices, nearest
+from uq.indices.index import RefusedError
+from uq.indices.measures import MIN_SIDE
 from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS
 from uq.result.element import Element
 from uq.result.result import Result
+from uq.sampling.designs import PLAIN
+from uq.stats.intervals import sized
 from uq.text.element_names import is_whole, whole_name
+from uq.text.numbers import counted, grouped, percent, rows_in_words
 from uq.text.quantities import read_threshold
+
+
+def wholes(elements: Sequence[Element], every: bool = False) -> Iterator[IndexTarget]:
+    """Yield targets that are all elements of an output together.
+
+    Parameters
+    ----------
+    elements : sequence of Element
+        All those of one output.
+    every : bool, optional
+        Whether also those that must be asked for by name.
+
+    Yields
+    ------
+    IndexTarget
+        Numbers of shape (n, e). First what stands for each element by default, in one form for
+        all: the logarithms if some have a heavy tail or are lifetimes, the ranks if some rows have
+        no logarithm, else the values. If every target is asked for, the other forms follow.
+        Nothing of an output with one element.
+    """
+    if len(elements) < 2:
+        return
+    first, name = elements[0], whole_name(elements[0].output)
+    usual = _common(elements)
+    target = _together(elements, usual)
+    if first.is_lifetime or not usual:
+        yield target
+    else:
+        note = f"{_HEAVY}: these are indices of their {FORMS[usual]}s; ask for {name} for their own"
+        yield replace(target, notes=(*target.notes, note))
+    if not every or first.is_angle:
+        return
+    for form in ("log", "rank", "rate") if first.is_lifetime else ("", "log", "rank"):
+        if form != usual:
+            other = _together(elements, form)
+            better = () if form else (f"{_HEAVY}: {usual}({name}) is more informative",)
+            yield replace(other, notes=other.notes + better)
+
+
+_HEAVY = "some elements have a heavy tail"
+
+
+def _common(elements: Sequence[Element]) -> str:
+    """Return the form that serves all elements."""
+    forms = {split_name(lightened(number_of(element)).name)[0] for element in elements}
+    if len(forms) == 1:
+        return forms.pop()
+    no_logarithm = any(transformed(element, "log").refused for element in elements)
+    return "rank" if "rank" in forms or no_logarithm else "log"
+
+
+def _together(elements: Sequence[Element], form: str) -> IndexTarget:
+    parts = [
+        transformed(element, form) if form else IndexTarget(element.name, element, element.values)
+        for element in elements
+    ]
+    name = whole_name(elements[0].output)
+    values = np.column_stack([part.values for part in parts])
+    lacking = [part.name for part in parts if not np.isfinite(part.values).any()]
+    refused = next((part.refused for part in parts if part.refused), "")
+    if lacking and not refused:
+        others = "; ask for the other elements by name" if len(lacking) < len(parts) else ""
+        refused = f"no row has a {lacking[0]}{others}"
+    notes = _weights(elements, values[np.isfinite(values).all(axis=1)])
+    return IndexTarget(f"{form}({name})" if form else name, None, values, refused, notes=notes)
+
+
+def _weights(elements: Sequence[Element], values: np.ndarray) -> tuple[str, ...]:
+    """Return a sentence on the weights of the elements; none where nothing varies."""
+    if len(values) == 0 or not (variance := sized(values)[0].var(axis=0)).any():
+        return ()
+    most = int(variance.argmax())
+    return (
+        f"[:] is all {len(elements)} elements together, each weighted by its variance, of which"
+        f" {elements[most].name} has {percent(variance[most] / variance.sum())}",
+    )
+
+
+FEWEST_HITS = 5
+"""With fewer in each replicate an event has no indices."""
+
+ENOUGH_HITS = 20
+"""With fewer in each replicate the indices come with a warning."""
+
+
+def few_hits(result: Result, target: IndexTarget, intervals: bool = True) -> tuple[str, ...]:
+    """Return the warning for an event with few hits or misses; any two values make one.
+
+    Parameters
+    ----------
+    result : Result
+        The result that the target is of.
+    target : IndexTarget
+    intervals : bool, optional
+        Whether its indices have any.
+
+    Returns
+    -------
+    tuple of str
+        One sentence or none; none for all elements of an output together.
+
+    Raises
+    ------
+    RefusedError
+        Fewer than `FEWEST_HITS` in each replicate.
+    """
+    if target.values.ndim > 1:
+        return ()
+    values, replicates = target.values, int(result.dataset.attrs.get("replicates", 1))
+    if not (target.event or len(np.unique(values[np.isfinite(values)])) == 2):
+        return ()
+    if not result.why_no_statistics:
+        with_hits = Result(result.dataset.assign(hit=("row", values)))
+        values = with_hits.independent.dataset["hit"].values
+    defined = values[np.isfinite(values)]
+    hits = defined > defined.min(initial=np.inf)
+    rarer = int(min(hits.sum(), (~hits).sum()))
+    if not 0 < rarer < ENOUGH_HITS * replicates:
+        return ()  # without any the method refuses
+    side = ("hit",) if rarer == hits.sum() else ("miss", "misses")
+    per_replicate = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
+    samples = int(result.dataset.attrs["samples"])
+    needed = rows_in_words(ENOUGH_HITS * replicates / rarer * samples)
+    remedy = f"about {needed} samples instead of {grouped(samples)} would give {ENOUGH_HITS}"
+    seen = f"only {counted(rarer, *side)} in {counted(len(hits), 'row')}{per_replicate}"
+    if rarer < FEWEST_HITS * replicates:
+        if target.event and result.design.layout is not PLAIN:
+            remedy += f", and 'regional' of a 'monte-carlo' design needs {MIN_SIDE} in all"
+        raise RefusedError(f"{seen}: {FEWEST_HITS} are needed for an index; {remedy}")
+    widened = result.design.crossed
+    narrow = ", and intervals may be too narrow" if intervals and not widened else ""
+    return (f"{seen}: the indices are rough{narrow}; {remedy}",)
 
 
 def chosen(

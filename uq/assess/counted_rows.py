@@ -6,19 +6,20 @@ from math import nan
 
 import numpy as np
 
-from uq.assess.estimators import Estimator, quantile, share
 from uq.assess.sample import (
     Curve,
+    Estimator,
     Functions,
     Sample,
     censored_before,
     on_side,
+    quantile,
+    share,
     share_of,
     whenever_censored_rows_end,
 )
 from uq.contract import Floats, Mask
 from uq.stats import order_statistics
-from uq.stats.beta_products import BetaProducts
 from uq.stats.clusters import Clusters, dealt
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import (
@@ -28,8 +29,8 @@ from uq.stats.intervals import (
     share_interval,
     upper_probability,
 )
-from uq.stats.kaplan_meier import SurvivalCurve, kaplan_meier, outliving
 from uq.stats.quantile_functions import normal
+from uq.stats.survival_curves import BetaProducts, SurvivalCurve, kaplan_meier, outliving
 
 ASSUMES = "that censoring is non-informative"
 """What the Kaplan-Meier estimate assumes."""

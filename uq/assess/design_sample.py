@@ -11,15 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.assess.independent_inputs import correlated_inputs, independent_inputs
+from uq.assess.row_inputs import correlated_inputs, independent_inputs
 from uq.contract import Floats
 from uq.errors import InputError
-from uq.indices.sample import DesignSample
+from uq.indices.method import DesignSample
 from uq.result.elements import flags
 from uq.result.result import Result
-from uq.sampling.conditional_draws import conditional_paths
-from uq.sampling.dependence import normal_correlations
-from uq.sampling.layouts import PLAIN
+from uq.sampling.dependence import conditional_paths, normal_correlations
+from uq.sampling.designs import PLAIN
 from uq.study.file import Tied
 from uq.study.input_checks import laws_of
 

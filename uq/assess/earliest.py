@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.assess.independent_inputs import independent_inputs
+from uq.assess.row_inputs import independent_inputs
 from uq.contract import Floats
 from uq.result.element import Element
 from uq.result.elements import flags

@@ -12,9 +12,8 @@ import numpy as np
 
 from uq.assess.targets import lightened, number_of
 from uq.contract import Floats
-from uq.indices.method import SensitivityMethod
+from uq.indices.method import DesignSample, SensitivityMethod
 from uq.indices.methods import METHODS, piloted_by
-from uq.indices.sample import DesignSample
 from uq.result.element import Element
 from uq.result.elements import flags
 from uq.result.result import Result

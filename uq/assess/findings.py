@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from uq.assess.earliest import ranks
 from uq.assess.fleet import Fleet, fleet_of
-from uq.assess.independent_inputs import independent_inputs
 from uq.assess.level_shares import ByLevel, by_level
-from uq.assess.regime_boundary import boundary
+from uq.assess.regimes import boundary
+from uq.assess.row_inputs import independent_inputs
 from uq.assess.sensitivities import Sensitivities, TargetIndices, sensitivities
 from uq.assess.statistic import Statistic
 from uq.assess.summary import Summary, summarise
@@ -42,7 +42,7 @@ class Findings:
 
     @cached_property
     def ranked(self) -> "Findings":
-        """Findings on the rows that rank inputs (`uq.result.ranked_rows.ranked_rows`)."""
+        """Findings on the rows that rank inputs (`uq.result.nesting.ranked_rows`)."""
         ranked = self.result.ranked
         return self if ranked is self.result else Findings(ranked)
 
@@ -67,7 +67,7 @@ class Findings:
 
     @cached_property
     def boundary(self) -> Statistic | None:
-        """The boundary between regimes (`uq.assess.regime_boundary.boundary`)."""
+        """The boundary between regimes (`uq.assess.regimes.boundary`)."""
         return boundary(self.result)
 
     @cached_property

@@ -1,23 +1,27 @@
 """Fleets: when the first of some units ends, and how many have ended by a time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from uq.assess.fact import Fact
 from uq.assess.fleet_numbers import Banded, FleetNumbers
 from uq.assess.fleets import Units, units_of
+from uq.assess.population import Population
 from uq.assess.row_inputs import inputs_of
 from uq.assess.scaling import without_effect
 from uq.assess.summary import why_no_intervals
+from uq.assess.summary_facts import quality_facts
 from uq.errors import InputError, choices
 from uq.result.element import Element
 from uq.result.nesting import Nesting, samples_have, size_in_words
 from uq.result.result import AnyResult, Result
 from uq.sampling.designs import several
 from uq.sampling.levels import SHARED
+from uq.stats import estimate_json
 from uq.stats.clusters import Clusters
 from uq.stats.importance_weights import Smoothed, of_samples, quality, worth_in_words
 from uq.stats.intervals import Replicates
@@ -258,3 +262,40 @@ def _part_of_samples(rows: Result, place: Nesting) -> Replicates:
         _, first = np.unique(place.sample, return_index=True)
         return part[first]
     return None if rows.has_independent_samples else place.replicate
+
+
+def fleet_facts(fleets: Fleet) -> Fact:
+    """Return the numbers of fleets of one size."""
+    notes = tuple(fleets.notes)
+    quality = {
+        name: replace(fact, notes=notes) for name, fact in quality_facts(fleets.weights).items()
+    }
+    numbers: dict[str, Any] = {
+        "output": fleets.output,
+        "size": fleets.size,
+        "allow": fleets.allow,
+        "samples": fleets.samples,
+        "integrated": list(fleets.integrated),
+        "first": {"quantiles": {repr(p): _banded(banded) for p, banded in fleets.first.items()}},
+        "by": {
+            repr(time): {"failed": _banded(failed), "at_most_allowed": _banded(at_most)}
+            for time, (failed, at_most) in fleets.by.items()
+        },
+        "notes": fleets.notes,
+    }
+    return Fact(quality | numbers, (fleet, Population), notes=notes)
+
+
+def _banded(banded: Banded) -> dict[str, Any]:
+    entry = estimate_json.whole(banded.estimate) | estimate_json.failed(banded.failed)
+    for name, end in (("band_low", banded.low), ("band_high", banded.high)):
+        entry[name] = estimate_json.number(end.value)
+        entry |= estimate_json.flag(f"{name}_", end, "value")
+        for which in ("low", "high"):
+            entry[f"{name}_{which}"] = estimate_json.number(getattr(end, which))
+            entry |= estimate_json.flag(f"{name}_{which}_", end, which)
+        if end.reason:
+            entry[f"{name}_reason"] = end.reason
+        if end.assumes:
+            entry[f"{name}_assumes"] = end.assumes
+    return entry

@@ -1,16 +1,16 @@
 """Shares of the variance: shared by the units of a sample, own to a unit, due to chance."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
 
 import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
 
-from uq.assess.chosen_targets import targets_of
-from uq.assess.few_events import FEWEST_HITS, few_hits
-from uq.assess.regime_switching import switching
-from uq.assess.scaling_by_level import Scales, scales_by_level
+from uq.assess.chosen_targets import FEWEST_HITS, few_hits, targets_of
+from uq.assess.scaling import Scales, scales_by_level
 from uq.assess.statistics.counts import stated_error
 from uq.assess.targets import IndexTarget, lightened, split_name
 from uq.assess.variance_by_level import SOLVER, SOURCES, LevelShares, shares_of
@@ -18,11 +18,79 @@ from uq.contract import Floats
 from uq.errors import InputError
 from uq.indices.index import RefusedError
 from uq.result.nesting import Nesting, size_in_words
-from uq.result.result import Result
+from uq.result.result import AnyResult, Result
 from uq.result.variables import is_error
+from uq.sampling.designs import several
+from uq.sampling.levels import CHANCE, OWN
+from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import Smoothed, largest_share, of_samples, too_large
+from uq.stats.importance_weights import Smoothed, largest_share, of_samples, quality, too_large
+from uq.stats.intervals import by_replicate, scattered_share_interval
 from uq.stats.tails import lacks_variance
+from uq.stats.weighted_means import weighted_share
+
+ONE_REPEAT = "a single repeat does not show whether another ends in another regime; {}"
+
+
+def switching(
+    rows: Result, place: Nesting, varying: Collection[str], weights: Floats | None = None
+) -> tuple[Estimate, Floats]:
+    """Estimate the probability that a repeat ends in another regime.
+
+    Parameters
+    ----------
+    rows : Result
+        Rows of a result with regimes.
+    place : Nesting
+        Nesting of these rows.
+    varying : collection of str
+        The levels on which something varies.
+    weights : ndarray, shape (samples,), optional
+        Of samples.
+
+    Returns
+    -------
+    mean : Estimate
+        Over all rows; its interval rests on samples. Zero where nothing is random.
+    each : ndarray, shape (n,)
+        Of each row: the share of the other repeats of its unit that end in another regime. NaN
+        without a regime, or another repeat. Where nothing is own to a unit, units are repeats.
+    """
+    codes = rows.dataset["regime"].values
+    if CHANCE not in varying:
+        return Estimate(0.0, 0.0, 0.0), np.where(codes >= 0, 0.0, np.nan)
+    unit = place.sample * place.units + place.unit if OWN in varying else place.sample
+    elsewhere = _elsewhere(unit, codes)
+    defined = np.isfinite(elsewhere)
+    if not defined.any():
+        return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.design_name))), elsewhere
+    value, clusters = float(elsewhere[defined].mean()), rows.replicates
+    if not isinstance(clusters, Clusters):
+        clusters = Clusters(place.sample, place.samples)
+    if weights is not None:
+        return weighted_share(
+            elsewhere[defined], weights[place.sample[defined]], clusters[defined]
+        ), elsewhere
+    means = by_replicate(elsewhere[defined], clusters[defined])
+    low, high = scattered_share_interval(
+        value, means, rows=int(defined.sum()), samples=clusters.samples
+    )
+    return Estimate(value, float(low), float(high)), elsewhere
+
+
+def _elsewhere(unit: NDArray[np.integer], codes: NDArray[np.integer]) -> Floats:
+    """Return for each row the share of the other rows of its unit with another code."""
+    probabilities = np.full(len(codes), np.nan)
+    kept = codes >= 0
+    _, place = np.unique(unit[kept], return_inverse=True)
+    pairs = place * (int(codes.max(initial=0)) + 1) + codes[kept]
+    _, same = np.unique(pairs, return_inverse=True)
+    others = np.bincount(place)[place] - 1
+    alike = np.bincount(same)[same] - 1
+    share = np.divide(others - alike, others, out=np.full(len(place), np.nan), where=others > 0)
+    probabilities[kept] = share
+    return probabilities
+
 
 SHARES_OF = "these are shares of the variance of its {form}"
 NO_ERROR = "the model states no numerical error of it"
@@ -196,3 +264,75 @@ def _errors(rows: Result, target: IndexTarget) -> tuple[Floats | None, str]:
     if form:
         return None, NO_ERROR_OF.format(form={"P": "event"}.get(form, form))
     return np.abs(stated.values), ""
+
+
+def levels(result: AnyResult, output: str | None = None, *, plain: bool = False) -> xr.Dataset:
+    """Apportion the variance to what units share, what is their own, chance, and the solver.
+
+    Parameters
+    ----------
+    result : Result, xarray.Dataset or path
+        A result, or a posterior of `uq.update`, of units never inspected.
+    output : str, optional
+        Only this output, or this element of one; by default those that the study shows.
+    plain : bool, optional
+        Whether to take lives as computed; by default what only scales a life is integrated: its
+        part of the variance is known exactly, and only that of everything else is estimated.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``output`` and ``level`` (``shared``, ``own``, ``chance``, ``solver``): ``share`` of
+        the variance, with its 95 % interval ``share_low`` and ``share_high``, and ``reason``, why
+        one of them is NaN; ``assumes`` where a share contains another. Over ``output``:
+        ``variance`` (the sum of the three components), ``samples_left_out`` and ``integrated``,
+        names of inputs separated by spaces. The share of the solver, from ``<output>_error``, is
+        contained in the others. Lifetimes are replaced by their logarithms, or by their ranks where
+        rows never end or are censored; a value with a heavy tail likewise. Of a model with regimes:
+        over ``sample``, ``another_regime``, the share of the other repeats of its unit that end in
+        another regime; ``another_regime_mean``, with ``_low`` and ``_high``, their mean.
+
+    Raises
+    ------
+    InputError
+        When the rows do not follow the laws of the inputs, or there is no such output.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> float(uq.levels(ds)["share"].sel(level="own")[0])  # every input is a unit's own
+    1.0
+    """
+    result = Result.of(result)
+    decomposition = by_level(result, output, plain=plain)
+    data: dict[str, Any] = {}
+    for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
+        data[name] = _over(decomposition.outputs.values(), end, float)
+    for name in ("reason", "assumes"):
+        data[name] = _over(decomposition.outputs.values(), name, str)
+    data["variance"] = ("output", [target.variance for target in decomposition.outputs.values()])
+    data["samples_left_out"] = (
+        "output",
+        [target.left_out for target in decomposition.outputs.values()],
+    )
+    integrated = [" ".join(target.integrated) for target in decomposition.outputs.values()]
+    data["integrated"] = ("output", np.array(integrated, dtype=str))
+    if decomposition.another_regime is not None:
+        data["another_regime"] = ("sample", decomposition.switching)
+        for end, value in zip(
+            ("mean", "low", "high"), decomposition.another_regime.numbers, strict=True
+        ):
+            data["another_regime_mean" + f"_{end}" * (end != "mean")] = value
+    attrs: dict[str, Any] = {
+        "samples": decomposition.samples,
+        "units_per_sample": decomposition.units,
+        "repeats": decomposition.repeats,
+    }
+    attrs |= quality(decomposition.weights)
+    coords = {"output": list(decomposition.outputs), "level": list(SOURCES)}
+    return xr.Dataset(data, coords, attrs)
+
+
+def _over(outputs: Any, name: str, kind: type) -> tuple[tuple[str, str], Any]:
+    cells = [[getattr(target.shares[source], name) for source in SOURCES] for target in outputs]
+    return ("output", "level"), np.array(cells, dtype=kind).reshape(-1, len(SOURCES))

@@ -12,12 +12,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.assess.estimators import MEAN, SD, Estimator, SelectedRows
+from uq.assess.sample import MEAN, SD, Estimator, SelectedRows
 from uq.contract import Floats
 from uq.result.result import Result
 from uq.stats import intervals, two_samples
 from uq.stats.estimate import Estimate
-from uq.stats.exact_shares import exact_interval
+from uq.stats.intervals import exact_interval
 from uq.stats.jumps import beyond_jumps
 from uq.stats.weighted_means import share_to_compare
 from uq.study.file import Tied

@@ -7,10 +7,18 @@ from math import ceil, exp, inf, isfinite, isnan, log, nan
 
 import numpy as np
 
-from uq.assess.conditional_survival import learnt_terms
 from uq.assess.counted_rows import CountedRows
-from uq.assess.estimators import Estimator, SelectedRows, share
-from uq.assess.sample import Curve, Functions, Sample, censored_before, on_side
+from uq.assess.sample import (
+    Curve,
+    Estimator,
+    Functions,
+    Sample,
+    SelectedRows,
+    censored_before,
+    on_side,
+    share,
+)
+from uq.assess.scale_laws import learnt_terms
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.stats.clusters import Clusters

@@ -8,10 +8,10 @@ import numpy as np
 from scipy import special
 
 from uq.contract import Floats
+from uq.stats.counting import mixing_bounds
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows
 from uq.stats.intervals import ROUNDING, Replicates, share_interval
-from uq.stats.mixing_bounds import mixing_bounds
 from uq.stats.weighted_means import EXACT, weighted_share
 
 FEWEST_WORLDS = 20

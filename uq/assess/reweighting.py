@@ -1,19 +1,103 @@
 """The rows of a result as those of another study: weighted, and laws of lives replaced."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
+from scipy import special
 
-from uq.assess.densities import changed_laws, log_ratio, share_without_rows
-from uq.assess.row_inputs import Inputs
+from uq.assess.row_inputs import EVERYWHERE, Inputs
 from uq.assess.scaling import integrated
+from uq.contract import Floats
 from uq.errors import InputError, RunError
 from uq.result.element import Element
 from uq.result.result import Result
+from uq.sampling.dependence import normal_correlations
+from uq.sampling.truncation import OUTSIDE_AT_MOST, factor_ends, log_density_between, ppf_within
 from uq.stats.importance_weights import Smoothed, no_weights, smoothed
 from uq.stats.intervals import Replicates
+
+
+def log_ratio(rows: int, old: Inputs, new: Inputs, integrated: Collection[str] = ()) -> Floats:
+    """Return the logarithm of the new density of the inputs over the old one, shape (n,).
+
+    Parameters
+    ----------
+    rows : int
+        How many.
+    old, new : Inputs
+        Of these rows.
+    integrated : collection of str
+        Inputs that do not take part.
+    """
+    ratio = np.zeros(rows)
+    for name in changed_laws(old, new):
+        if name not in integrated:
+            ratio += _log_density(new, name) - _log_density(old, name)
+    if depends_otherwise(old, new):
+        ratio += _log_copula(new, integrated) - _log_copula(old, integrated)
+    return ratio
+
+
+def changed_laws(old: Inputs, new: Inputs) -> list[str]:
+    """Return the parameters whose law is another one."""
+    return [name for name in old.laws if not _same(old.laws[name], new.laws[name])]
+
+
+def depends_otherwise(old: Inputs, new: Inputs) -> bool:
+    """Whether correlated inputs have other laws or other correlations."""
+    if old.dependence is None or new.dependence is None:
+        return False
+    if old.dependence.rank_correlation != new.dependence.rank_correlation:
+        return True
+    return any(name in old.correlated for name in changed_laws(old, new))
+
+
+def share_without_rows(old: Inputs, new: Inputs, name: str) -> float:
+    """Return the probability of the new law of a parameter where the old one has none."""
+    z = np.linspace(-6.0, 6.0, 1201)
+    ends = EVERYWHERE if new.laws[name].times else new.bounds[name]
+    places = ppf_within(new.laws[name], special.ndtr(z), ends)
+    lost = np.isneginf(log_density_between(old.laws[name], places, *ends))
+    share = float(np.average(lost, weights=np.exp(-(z**2) / 2)))
+    return share if share > OUTSIDE_AT_MOST else 0.0
+
+
+def _same(law: object, other: object) -> bool:
+    ignored = {"source", "file", "column"}
+    return law.model_dump(exclude=ignored) == other.model_dump(exclude=ignored)  # type: ignore[attr-defined]
+
+
+def _log_density(inputs: Inputs, name: str) -> Floats:
+    law = inputs.laws[name]
+    ends = inputs.bounds[name]
+    if law.times is not None:
+        ends = factor_ends(inputs.values[law.times], ends)
+    return log_density_between(law, inputs.law_values(name), *ends)
+
+
+def _log_copula(inputs: Inputs, integrated: Collection[str]) -> Floats:
+    """Return the logarithm of the Gaussian copula's density."""
+    names, matrix = correlations(inputs, integrated)
+    z = np.stack([inputs.normal(name) for name in names], axis=1)
+    excess = np.linalg.inv(matrix) - np.eye(len(names))
+    _, log_determinant = np.linalg.slogdet(matrix)
+    return np.asarray(-0.5 * (np.einsum("ni,ij,nj->n", z, excess, z) + log_determinant))
+
+
+def correlations(inputs: Inputs, integrated: Collection[str] = ()) -> tuple[list[str], Floats]:
+    """Return the correlated inputs that are not integrated, and how their normal variables are.
+
+    Returns
+    -------
+    names : list of str
+    matrix : ndarray, shape (k, k)
+    """
+    assert inputs.dependence is not None
+    names = [name for name in inputs.correlated if name not in integrated]
+    kept = [inputs.correlated.index(name) for name in names]
+    return names, normal_correlations(inputs.dependence.rank_correlation)[np.ix_(kept, kept)]
 
 
 class Weighting:

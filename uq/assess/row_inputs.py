@@ -1,5 +1,6 @@
-"""The uncertain inputs of some rows: their values, and the laws that these follow."""
+"""The inputs of rows: values, the laws that these follow, and dependence."""
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
@@ -9,6 +10,7 @@ from scipy import special
 
 from uq.contract import Floats
 from uq.result.result import Result
+from uq.sampling.designs import DESIGNS
 from uq.sampling.law import Law
 from uq.sampling.truncation import cdf_within, factor_of
 from uq.study.file import DependenceTable, StudyFile, Tied
@@ -91,3 +93,70 @@ class _Columns(dict[str, Floats]):
     def __missing__(self, name: str) -> Floats:
         self[name] = self._dataset[name].values
         return self[name]
+
+
+def independent_inputs(result: Result) -> dict[str, Floats]:
+    """Return the values of each input as its own law gives them.
+
+    Parameters
+    ----------
+    result : Result
+        A result.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+        Without parameters that equal another; for one that is another times a factor, the factor.
+        With inputs that have rank correlations.
+    """
+    return {
+        name: result.dataset[name].values
+        if law.times is None
+        else factor_of(law, result.dataset[name].values, result.dataset[law.times].values)
+        for name, law in laws_of(result.dataset.attrs["study"]).items()
+    }
+
+
+def correlated_inputs(result: Result) -> dict[str, tuple[str, ...]]:
+    """Return the inputs with stated rank correlations: name -> correlated inputs."""
+    stated = result.study.dependence
+    if stated is None:
+        return {}
+    names = stated.parameters
+    return {
+        name: tuple(other for other, rank in zip(names, row, strict=True) if rank and other != name)
+        for name, row in zip(names, stated.rank_correlation, strict=True)
+    }
+
+
+def why_dependent(result: Result) -> str:
+    """Return a clause on why inputs are not assumed to be independent, or ""."""
+    study = result.study
+    if study.dependence is not None:
+        return "the inputs of this study depend on each other"
+    if DESIGNS[study.design.method].imported and not study.design.independent:
+        return "imported inputs may depend on each other"
+    return ""
+
+
+_DUE = "the index of an input may be due to another"
+_DIVIDED = "what correlated inputs explain in common is divided among them"
+
+
+def notes_on_inputs(result: Result) -> list[str]:
+    """Return sentences on the meaning of indices of tied or dependent inputs."""
+    notes, tied = [], defaultdict[str, list[str]](list)
+    for name, entry in result.study.uncertain.items():
+        if isinstance(entry, Tied):
+            tied[entry.equals].append(name)
+        elif entry.times is not None:
+            notes.append(f"{name} is {entry.times} times a factor: its index is that of the factor")
+    for name, others in tied.items():
+        equal, together = ("equals", "both") if len(others) == 1 else ("equal", "all of them")
+        notes.append(
+            f"{' and '.join(others)} {equal} {name}: the index of {name} is that of {together}"
+        )
+    if why := why_dependent(result):
+        shared = result.design.layout.given_the_rest
+        notes.append(f"{why}: {_DIVIDED if shared else _DUE}")
+    return notes

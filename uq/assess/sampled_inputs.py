@@ -7,7 +7,7 @@ import numpy as np
 import scipy  # which imports scipy.stats when it is first used
 
 from uq.assess.fact import Fact
-from uq.assess.independent_inputs import independent_inputs
+from uq.assess.row_inputs import independent_inputs
 from uq.contract import Floats
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS

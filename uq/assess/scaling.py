@@ -1,20 +1,25 @@
 """Inputs of a result that only scale a life, and the laws of its lives given all others."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
-from uq.assess.posterior_scale import learnt_input, learnt_scale
 from uq.assess.row_inputs import Inputs, inputs_of
-from uq.assess.scale_laws import ConditionalScale, IndependentScale, Scale
-from uq.contract import Output
+from uq.assess.scale_laws import (
+    ConditionalScale,
+    IndependentScale,
+    Scale,
+    learnt_input,
+    learnt_scale,
+)
+from uq.contract import Floats, Output
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.dependence import normal_correlations
 from uq.sampling.law import Law
-from uq.sampling.levels import SHARED
+from uq.sampling.levels import LEVELS, SHARED
 from uq.sampling.log_sums import LogTerm, law_of_sum
 from uq.sampling.truncation import support
 from uq.text.numbers import counted
@@ -240,3 +245,55 @@ def why_not_integrated(rows: Result, element: Element) -> str:
 def not_integrated(kept: Mapping[str, str]) -> str:
     """Return a sentence on inputs that are not integrated, or ""."""
     return "; ".join(f"{name} not integrated: {why}" for name, why in kept.items())
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Laws of the inputs integrated in the logarithms of lives, by level.
+
+    Attributes
+    ----------
+    laws : dict of str to Scale
+        By level.
+    why_not_more : str
+        A sentence on the inputs that scale lives but are not integrated, or "".
+    idle : tuple of str
+        Inputs that scale lives to powers that cancel.
+    """
+
+    laws: Mapping[str, Scale]
+    why_not_more: str = ""
+    idle: tuple[str, ...] = ()
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Integrated inputs."""
+        return tuple(name for law in self.laws.values() for name in law.inputs)
+
+    def mean_logarithms(self, logarithms: Floats) -> Floats:
+        """Return the means of the logarithms of lives over the integrated inputs, shape (n,)."""
+        return sum((law.moments[0] for law in self.laws.values()), start=logarithms)
+
+    @property
+    def variances(self) -> dict[str, Floats]:
+        """Level -> the variance of the logarithm that is integrated there, of each row."""
+        return {level: law.moments[1] for level, law in self.laws.items()}
+
+
+def scales_by_level(rows: Result, element: Element) -> Scales:
+    """Return the laws of the inputs that only scale the lives of an element, by level.
+
+    Parameters
+    ----------
+    rows : Result
+        The independent rows of a result, or samples of several rows.
+    element : Element
+        A life of these rows, none censored.
+    """
+    if not element.declared.scales:
+        return Scales({})
+    inputs = inputs_of(rows)
+    parts = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}
+    kept = {name: why for _, reasons in parts.values() for name, why in reasons.items()}
+    laws = {level: law for level, (law, _) in parts.items() if law is not None}
+    return Scales(laws, not_integrated(kept), without_effect(inputs, element.declared))

@@ -2,26 +2,61 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import nan
+from math import isfinite, nan
 
 import numpy as np
 
-from uq.assess.chosen_targets import chosen
+from uq.assess.chosen_targets import chosen, few_hits
 from uq.assess.design_sample import sample_of
-from uq.assess.few_events import few_hits
-from uq.assess.independent_inputs import notes_on_inputs, why_dependent
+from uq.assess.row_inputs import notes_on_inputs, why_dependent
 from uq.assess.targets import IndexTarget, where_it_happens
 from uq.contract import Mask
 from uq.errors import InputError, nearest
-from uq.indices.index import IndexKind, Indices, RefusedError
-from uq.indices.method import SensitivityMethod
+from uq.indices.index import IndexKind, Indices, Null, RefusedError
+from uq.indices.method import DesignSample, SensitivityMethod
 from uq.indices.methods import METHODS, designs_for, fed_by, for_dependent_inputs
-from uq.indices.sample import DesignSample
 from uq.result.result import Result
-from uq.sampling.designs import DESIGNS
-from uq.sampling.layouts import PLAIN
+from uq.sampling.designs import DESIGNS, PLAIN
 from uq.stats.estimate import Estimate
 from uq.stats.tails import lacks_variance
+
+Values = Mapping[IndexKind, Mapping[str, Estimate]]
+
+
+def ranking(values: Values) -> list[str]:
+    """Return the inputs, or pairs of them, the most important by the last kind of index first."""
+    last = list(values.values())[-1]
+    return sorted(last, key=lambda label: -size(last[label]))
+
+
+def size(index: Estimate) -> float:
+    """Return the value of an index; 0 where there is none."""
+    return index.value if isfinite(index.value) else 0.0
+
+
+def lines(values: Values, nulls: Mapping[IndexKind, Null]) -> list[tuple[str, list[Estimate]]]:
+    """Return label and estimates, one of each kind, of each line of a table.
+
+    Parameters
+    ----------
+    values : dict of IndexKind to dict
+    nulls : dict of IndexKind to Null
+        Limits of indices of inputs without effect; unknown for pairs.
+
+    Returns
+    -------
+    list of tuple
+    """
+    ranked = ranking(values)
+    entries = [(label, [by_label[label] for by_label in values.values()]) for label in ranked]
+    limits = [nulls.get(kind, Null(nan)) for kind in values]
+    if any(isfinite(null.limit) for null in limits):
+        entries.append(("(an input without effect)", [Estimate(null.limit) for null in limits]))
+    if any(isfinite(null.largest) for null in limits):
+        label = f"(largest of {len(ranked)} such inputs)"
+        entries.append((label, [Estimate(null.largest) for null in limits]))
+    return entries
+
 
 ONE_ROW = (
     "from one row of each sample, since rows of one sample are not independent; see 'uq levels'"

@@ -1,14 +1,19 @@
-"""Sensitivity indices as arrays."""
+"""Sensitivity indices as arrays and as a tree of facts."""
 
+from functools import partial
+from math import isfinite
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from uq.assess.sensitivities import sensitivities
+from uq.assess.fact import Fact
+from uq.assess.sensitivities import Sensitivities, TargetIndices, sensitivities
 from uq.indices.index import Null
+from uq.indices.methods import indices_of
 from uq.result.result import AnyResult, Result
 from uq.stats.estimate import NOTHING
+from uq.stats.estimate_json import numbers
 
 
 def sensitivity(result: AnyResult, method: str | None = None) -> xr.Dataset:
@@ -62,12 +67,12 @@ def sensitivity(result: AnyResult, method: str | None = None) -> xr.Dataset:
         table = [
             [by_label.get(label, NOTHING).numbers for label in labels] for by_label in estimates
         ]
-        for end, numbers in zip(_ENDS, np.moveaxis(np.array(table), -1, 0), strict=True):
-            data[f"{kind.key}{end}"] = (("output", dim), numbers)
+        for end, values in zip(_ENDS, np.moveaxis(np.array(table), -1, 0), strict=True):
+            data[f"{kind.key}{end}"] = (("output", dim), values)
     if any(target.indices.noise for target in targets):
         shares = np.array([(target.indices.noise or NOTHING).numbers for target in targets])
-        for end, numbers in zip(_ENDS, shares.T, strict=True):
-            data[f"noise{end}"] = ("output", numbers)
+        for end, values in zip(_ENDS, shares.T, strict=True):
+            data[f"noise{end}"] = ("output", values)
     if any(target.indices.by_correlation for target in targets):
         names = coords["parameter"]
         due = [[name in target.indices.by_correlation for name in names] for target in targets]
@@ -81,3 +86,45 @@ def sensitivity(result: AnyResult, method: str | None = None) -> xr.Dataset:
 
 
 _ENDS = ("", "_low", "_high")
+
+
+def sensitivity_facts(sensitivities: Sensitivities) -> Fact:
+    """Return the indices of all targets."""
+    method = sensitivities.method
+    return Fact(
+        {
+            "method": method,
+            "rows_used": sensitivities.rows_used,
+            "groups_dropped": sensitivities.groups_dropped,
+            "outputs": {
+                name: _target(target, method) for name, target in sensitivities.targets.items()
+            },
+        },
+        (partial(indices_of, method, ""),),
+        rows=sensitivities.rows,
+    )
+
+
+def _target(target: TargetIndices, method: str) -> Fact:
+    indices, notes = target.indices, tuple(target.indices.notes)
+    members: dict[str, Any] = {
+        "rows_used": target.rows_used,
+        "groups_dropped": target.groups_dropped,
+    }
+    if target.refused:
+        return Fact(members | {"refused": target.refused})
+    for kind, values in indices.values.items():
+        by_input = {label: numbers(index) for label, index in values.items()}
+        members[kind.key] = Fact(by_input, (partial(indices_of, method, kind.key),), notes=notes)
+    if indices.noise is not None:
+        members["noise"] = numbers(indices.noise)
+    if indices.by_correlation:
+        members["by_correlation"] = list(indices.by_correlation)
+    if indices.nulls:
+        members["dummy"] = {
+            key: number
+            for kind, null in indices.nulls.items()
+            for key, number in ((kind.key, null.limit), (f"{kind.key}_any", null.largest))
+            if isfinite(number)
+        }
+    return Fact(members | {"notes": list(notes)}, notes=notes)

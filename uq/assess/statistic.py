@@ -7,14 +7,12 @@ from functools import cached_property
 from math import isfinite, isinf, isnan
 from typing import Any
 
-from uq.assess.estimators import Estimator
 from uq.assess.joint_bounds import JointBound, joint_bounds
 from uq.assess.population import as_sample
-from uq.assess.sample import Sample
+from uq.assess.sample import Estimator, Sample
 from uq.result.element import Element
 from uq.result.result import Result
-from uq.stats.estimate import Estimate
-from uq.stats.estimate_text import interval_text, value_text
+from uq.stats.estimate import Estimate, interval_text, value_text
 from uq.stats.importance_weights import Smoothed
 from uq.stats.intervals import Replicates
 from uq.study.file import AnalysisTable
@@ -96,7 +94,7 @@ class StatisticKind:
     name : str
         In the plural, at the start of a sentence.
     form : str
-        Of its JSON (`uq.assess.summary_json`): ``estimate``; ``moment``, the number, its interval
+        Of its JSON (`uq.assess.summary_facts`): ``estimate``; ``moment``, the number, its interval
         beside it; ``bound``, the number, and why there is none beside it; ``side`` of a threshold;
         ``share`` of a category; ``count``; ``number``; ``facts``, those of the statistic; "" for
         none of its own.

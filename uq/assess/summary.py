@@ -6,15 +6,14 @@ from itertools import chain
 
 import numpy as np
 
-from uq.assess.estimators import in_categories, share
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.life_fit import Fit, fits_of
 from uq.assess.reweighting import Weighting
-from uq.assess.sample import share_of
+from uq.assess.sample import in_categories, share, share_of
 from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic, StatisticKind
 from uq.assess.statistics.table import STATISTICS
-from uq.assess.stopping_status import why_ended
+from uq.assess.stopping import why_ended
 from uq.contract import Mask
 from uq.result.element import Element
 from uq.result.elements import flags

@@ -12,7 +12,7 @@ from uq.assess.scaling import population
 from uq.contract import Floats
 from uq.result.result import AnyResult, Result
 from uq.stats.intervals import Ends
-from uq.stats.survival_band import simultaneous_band
+from uq.stats.survival_curves import simultaneous_band
 
 
 def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Dataset:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from uq.assess.fact import Fact
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.sample import share_of
-from uq.assess.statistics.thresholds import SIDES
+from uq.assess.statistics.quantiles import SIDES
 from uq.contract import Floats
 from uq.errors import InputError, first_fault_alone
 from uq.result.element import Element
@@ -25,8 +25,7 @@ from uq.sampling.named_values import read_settings
 from uq.stats import estimate_json
 from uq.stats.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
-from uq.stats.exact_shares import FEW
-from uq.stats.intervals import mean_interval, share_interval
+from uq.stats.intervals import FEW, mean_interval, share_interval
 from uq.stats.moments import moments
 from uq.study.definition import Study, study_from_text
 from uq.study.evaluate import evaluate

@@ -6,13 +6,12 @@ from typing import Any
 
 import pandas as pd
 
-from uq.assess.densities import changed_laws, depends_otherwise
 from uq.assess.fact import Fact
-from uq.assess.reweighting import Weighting
+from uq.assess.reweighting import Weighting, changed_laws, depends_otherwise
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import Summary, summarise
-from uq.assess.summary_json import summary_facts
+from uq.assess.summary_facts import summary_facts
 from uq.assess.summary_table import table_of
 from uq.contract import Parameter
 from uq.errors import InputError, nearest

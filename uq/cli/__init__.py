@@ -4,33 +4,25 @@ Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
 
 Reading order; each part imports only those above it:
 
-    printing         text, numbers and tables on a terminal, and JSON
-    progress         the progress of a run
-    encodings        characters that the encoding of a stream lacks, as it can write them
-    options          arguments and options shared by several verbs of ``uq``, with their help
-    compare          the output of ``uq compare``
-    estimates        terminal output of ``uq twin`` and ``uq convergence``
-    fleet            terminal output of ``uq fleet``
-    guide            output of ``uq`` without a command: next steps
-    levels           terminal output of ``uq levels``
-    models           terminal output of ``uq models``
-    new_machine      files of ``uq init --machine NAME``
-    next_inspection  terminal output of ``uq next-inspection``
-    sensitivity      terminal output of ``uq sensitivity``: tables of 80 columns
-    summary_tables   the summary of a result, as tables of 80 columns
-    trace            terminal output of ``uq trace``
-    check            terminal output of ``uq check``
-    plan             the command ``uq plan``
-    rare_event       terminal output of ``uq rare-event``
-    simulate         the command ``uq simulate``
-    status           the commands ``uq status`` and ``uq verify``
-    streams          standard streams that are closed, full or no longer read
-    run              output of the verbs that compute rows of a result
-    what_if          the output of ``uq what-if``
-    row              terminal output of ``uq row``
-    learning         terminal output of ``uq update``
-    verbs            the verbs of ``uq``: what each takes, and what it calls
-    app              the command ``uq``: its verbs, in the order of ``uq --help``
+    printing        text, numbers and tables on a terminal, and JSON
+    progress        the progress of a run
+    options         arguments and options shared by several verbs of ``uq``, with their help
+    streams         standard streams that are closed, full or lack characters
+    compare         the output of ``uq compare``
+    estimates       terminal output of ``uq twin``, ``uq convergence`` and ``uq fleet``
+    guide           output of ``uq`` without a command: next steps
+    models          terminal output of ``uq models``
+    sensitivity     terminal output of ``uq sensitivity`` and ``uq levels``
+    summary_tables  summary of a result, also under other laws, as tables of 80 columns
+    trace           terminal output of ``uq trace``
+    check           terminal output of ``uq check`` and ``uq plan``, before a run
+    rare_event      terminal output of ``uq rare-event``
+    simulate        the command ``uq simulate``
+    run             output of the verbs that compute rows of a result
+    status          terminal output of ``uq status``, ``uq verify`` and ``uq row``
+    learning        terminal output of ``uq update`` and ``uq next-inspection``
+    verbs           the verbs of ``uq``: what each takes, and what it calls
+    app             the command ``uq``: its verbs, in the order of ``uq --help``
 """
 
 import gc

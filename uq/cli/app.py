@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from uq.cli.verbs import results, studies
-from uq.cli.verbs.learning import next_inspection, update
+from uq.cli.verbs.results import next_inspection, update
 
 VERBS = (
     studies.models,

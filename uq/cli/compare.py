@@ -4,13 +4,11 @@ from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 
-from uq.assess.comparison import Comparison, Side, comparison
-from uq.assess.differences import ComparedOutput, ComparedStatistic
-from uq.assess.summary_json import comparison_facts
+from uq.assess.comparison import ComparedOutput, ComparedStatistic, Comparison, Side, comparison
+from uq.assess.summary_facts import comparison_facts
 from uq.cli.printing import cells, grid, heading, note, paragraph, print_json
 from uq.result.result import Result
-from uq.stats.estimate import Estimate
-from uq.stats.estimate_text import interval_text
+from uq.stats.estimate import Estimate, interval_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, in_unit, number, percent
 from uq.text.units import typical, unit_of
 

@@ -1,10 +1,11 @@
-"""Terminal output of ``uq update``."""
+"""Terminal output of ``uq update`` and ``uq next-inspection``."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from math import isfinite
+from math import exp, isfinite
 from pathlib import Path
+from typing import Any
 
 from uq.cli import progress, say_when_interrupted
 from uq.cli.printing import console, grid, heading, note, paragraph, print_json, title
@@ -15,14 +16,16 @@ from uq.explore.new_rows import Budget
 from uq.explore.updating import is_study, learn, samples_for
 from uq.files.whole_files import check_target
 from uq.learning.answer import Learnt, learnt, learnt_facts
-from uq.learning.information_gain import Taught
-from uq.learning.inspection_log import read
+from uq.learning.inspections import read
+from uq.learning.next_inspection import Worth, unit_of_time, worth
+from uq.learning.posterior import Taught
 from uq.learning.posterior_inputs import InputLearnt
 from uq.learning.remaining_life import ANY, Remaining, read_times
 from uq.result.result import Result
-from uq.stats.estimate import Estimate
-from uq.stats.estimate_text import value_text
-from uq.text.numbers import in_brackets, number, percent
+from uq.stats import estimate_json
+from uq.stats.estimate import Estimate, value_text
+from uq.text.numbers import counted, in_brackets, number, percent, threshold
+from uq.text.quantities import read_threshold
 from uq.text.units import beside, powers, unit_of
 
 MOST_UNITS = 12
@@ -155,3 +158,50 @@ def _line(remaining: Remaining, per: float, times: Sequence[float]) -> tuple[str
         f"{remaining.effective_rows:.0f}",
         *(percent(share.value) if isfinite(share.value) else "-" for share in shares),
     )
+
+
+def next_inspection(
+    result: Path,
+    output: str,
+    times: Sequence[str],
+    units: Sequence[int],
+    cv: float,
+    life: str | None,
+    json: bool,
+) -> None:
+    """Show how far inspections of more units would narrow what units share."""
+    opened = Result.open(result)
+    at = [read_threshold("--at", text, "a life", unit_of_time(opened, output)) for text in times]
+    expected = worth(opened, output, at, units, cv, life)
+    if json:
+        print_json(_as_json(expected))
+        return
+    title(opened)
+    heading(f"\n{expected.life}", f"expected narrowing by inspecting {expected.output}")
+    lines = []
+    for time in at or (None,):
+        when = "at any time" if time is None else f"at {threshold(time, expected.time_unit)}"
+        shares = (expected.narrowing[time, count] for count in units)
+        lines.append((when, *(percent(share) if share == share else "-" for share in shares)))
+    grid(lines, header=("", *(counted(count, "unit") for count in units)))
+    note(
+        f"What units share scatters this life by a factor of {exp(expected.spread):.3g} (one"
+        " standard deviation); each cell is the share by which the logarithm of that factor is"
+        " expected to fall. The scatter between units remains."
+    )
+    for text in expected.notes:
+        note(text)
+
+
+def _as_json(expected: Worth) -> dict[str, Any]:
+    return {
+        "life": expected.life,
+        "inspect": expected.output,
+        "spread": estimate_json.number(expected.spread),
+        "time_units": expected.time_unit,
+        "notes": expected.notes,
+        "narrowing": [
+            {"time": time, "units": units, "value": estimate_json.number(share)}
+            for (time, units), share in expected.narrowing.items()
+        ],
+    }

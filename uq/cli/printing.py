@@ -13,8 +13,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from uq.stats.estimate import Estimate
-from uq.stats.estimate_text import interval_text, value_text
+from uq.stats.estimate import Estimate, interval_text, value_text
 from uq.text.literals import plain
 from uq.text.numbers import duration as duration
 from uq.text.numbers import number as number

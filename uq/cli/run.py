@@ -17,8 +17,8 @@ from uq.execution.amending import study_of
 from uq.execution.loading import load_study
 from uq.execution.options import Progress, RunOptions, ignore
 from uq.execution.row_folder import folder_of
-from uq.result.commands import with_model
 from uq.result.result import Result
+from uq.result.result_file import with_model
 from uq.study.definition import Study
 from uq.text.numbers import counted
 

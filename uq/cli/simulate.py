@@ -12,14 +12,13 @@ from uq.contract import Model, Status
 from uq.errors import InputError
 from uq.execution.loading import load_model
 from uq.execution.single_row import run_alone
-from uq.files.paths import file_behind
+from uq.files.whole_files import file_behind
 from uq.machines.compilation import compilation
 from uq.result.one_row import Row
 from uq.study.hints import undeclared_lives
 from uq.text.literals import read_number, read_toml
 from uq.text.numbers import in_brackets
-from uq.text.symbols import readable
-from uq.text.units import typical, unit_of
+from uq.text.units import readable, typical, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,7 +48,7 @@ def simulate(
 
 def check_files(model: Model, output: Path | None, plot: Path | None) -> None:
     """Refuse files that cannot be written, or that the model has nothing for."""
-    from uq.explore.simulation import holds_trajectory
+    from uq.explore.single_rows import holds_trajectory
     from uq.files.whole_files import check_target
 
     for path, option in ((output, "-o"), (plot, "--plot")):
@@ -66,7 +65,7 @@ def check_files(model: Model, output: Path | None, plot: Path | None) -> None:
 
 def _keep(row: Row, output: Path | None, plot: Path | None) -> None:
     """Write the row with its time history, draw the history, or both."""
-    from uq.explore.simulation import dataset
+    from uq.explore.single_rows import dataset
     from uq.files.whole_files import write
 
     ds = dataset(row)

@@ -1,16 +1,25 @@
-"""The commands ``uq status`` and ``uq verify``."""
+"""Terminal output of ``uq status``, ``uq verify`` and ``uq row``."""
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from uq.cli import progress
-from uq.cli.printing import console, duration, grid, heading, print_json
+from uq.cli.printing import console, duration, grid, heading, note, print_json
+from uq.cli.progress import say_compiling
+from uq.cli.simulate import as_json, check_files, draw, show_outputs
+from uq.contract import Status
+from uq.errors import InputError
+from uq.execution.amending import checksum_holds, recompute
+from uq.execution.loading import load_model
 from uq.execution.recomputed_row import other_versions
 from uq.execution.status import RunStatus, run_status
-from uq.execution.verification import checksum_holds, recompute
+from uq.explore.single_rows import RowAgain, row_again, with_trajectory
 from uq.machines.compilation import compilation
 from uq.result import result_file
-from uq.text.numbers import counted
+from uq.result.result import Result
+from uq.study.installed_models import find_model
+from uq.text.numbers import capitalized, counted, quantity
 
 
 def status(path: Path, json: bool) -> None:
@@ -63,3 +72,85 @@ def verify(path: Path, model: str | None) -> int:
     equal = len(rows) - len(differences)
     console.print(f"rows      {equal} of {len(rows)} recomputed are equal to the bit")
     return 1 if differences or holds is False else 0
+
+
+def row(
+    result: Path,
+    number: int | None,
+    lowest: str | None,
+    near_quantile: tuple[float, str] | None,
+    plot: Path | None,
+    model: str | None,
+    json: bool,
+) -> int:
+    """Show a row of a result, computed again; return the exit code."""
+    opened = Result.open(result)
+    if plot:
+        check_files(
+            load_model(model) if model else find_model(opened.dataset.attrs["model"]), None, plot
+        )
+    with compilation(say_compiling):
+        recomputed = row_again(opened, number, lowest, near_quantile, model, str(result))
+        if plot:
+            if recomputed.again is None:
+                raise InputError(
+                    f"{result}: row {recomputed.number}: no trajectory: {recomputed.reason}"
+                )
+            draw(with_trajectory(recomputed.stored.dataset, recomputed.again), plot)
+    print_json(plain(recomputed)) if json else _show(recomputed, len(opened))
+    return 1 if recomputed.differing else 0
+
+
+def plain(recomputed: RowAgain) -> dict[str, Any]:
+    """Return a row as plain data, for JSON.
+
+    Returns
+    -------
+    dict
+        ``row``, ``equal``, ``place`` in the design, and the row as `uq simulate` prints it. Where
+        it is not equal, ``reason``, and if it was computed again ``differing`` and ``again``. What
+        differs here from what made the result is in ``versions``, ``[there, here]``.
+    """
+    again = recomputed.again
+    entry: dict[str, Any] = {
+        "row": recomputed.number,
+        "equal": recomputed.equal,
+        "place": recomputed.place,
+    }
+    entry |= {"chosen": recomputed.choice.words} if recomputed.choice else {}
+    entry |= {"seed": again.seed} if again else {}
+    entry |= as_json(recomputed.row)
+    if recomputed.reason:
+        entry["reason"] = recomputed.reason
+    if again and recomputed.differing:
+        here = as_json(again)
+        entry["differing"] = list(recomputed.differing)
+        entry["again"] = {name: here[name] for name in ("inputs", "outputs", "status")}
+    if recomputed.versions:
+        entry["versions"] = {name: list(pair) for name, pair in recomputed.versions.items()}
+    return entry
+
+
+def _show(recomputed: RowAgain, rows: int) -> None:
+    stored, (status, meaning) = recomputed.row, recomputed.row.ending
+    title = f"{stored.model.name}, row {recomputed.number} of {rows}: {status.label}"
+    heading(title, "" if status is Status.OK else meaning)
+    if recomputed.choice:
+        grid([(recomputed.choice.words,)])
+    grid([(", ".join(f"{name} {place}" for name, place in recomputed.place.items()),)])
+    heading("\ninputs")
+    attributes = {name: recomputed.stored.dataset[name].attrs for name in stored.values}
+    inputs = [name for name in attributes if attributes[name].get("role") == "input"]
+    grid([(name, quantity(stored.values[name], attributes[name]["units"])) for name in inputs])
+    show_outputs(stored)
+    note(_in_words(recomputed))
+
+
+def _in_words(recomputed: RowAgain) -> str:
+    if recomputed.again is None:
+        return f"{capitalized(recomputed.reason)}."
+    code = "; the code of the model has changed since" if "code" in recomputed.versions else ""
+    if recomputed.equal:
+        return f"Computed again: equal to the bit{code}."
+    differing = ", ".join(recomputed.differing)
+    return f"Computed again: differs in {differing}. Reason: {recomputed.reason}."

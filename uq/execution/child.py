@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 
 from uq.contract import Model
 from uq.errors import InputError, described
-from uq.machines.child_processes import adopt, end_descendants
 from uq.machines.compilation import compilation
 from uq.machines.returned import RowError, as_plain, seen_in
 from uq.machines.row_by_row import RowByRow
+from uq.machines.row_resources import adopt, end_descendants
 from uq.study.evaluate import evaluate
 from uq.study.installed_models import code_of, model_at
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.execution.child import ModelSpec
-from uq.execution.children import Children
+from uq.execution.isolation import Children
 from uq.study.evaluate import Chunk
 from uq.study.provenance import differences
 

@@ -1,8 +1,8 @@
-"""Rows kept on disk as they arrive, whatever happens to the process."""
+"""Rows kept on disk as they arrive, whatever happens, and merged into one result."""
 
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -11,14 +11,22 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from uq.contract import Mask
 from uq.errors import RunError
-from uq.execution.chunk_file import Block, in_order, load, pack, save, unpack
-from uq.execution.merge import define, made_by, place, rerun, variants_of
-from uq.execution.records import RowsRecord, RunRecord, missing
-from uq.execution.row_folder import JOURNAL, clear, folder_of
-from uq.execution.tally import Failures, MemoryStore, joined_failures
+from uq.execution.row_folder import JOURNAL, RowsRecord, RunRecord, clear, folder_of, missing
+from uq.execution.tally import (
+    Block,
+    Failures,
+    MemoryStore,
+    in_order,
+    joined_failures,
+    load,
+    pack,
+    save,
+    unpack,
+)
 from uq.files.journal import Journal
-from uq.files.seal import seal
+from uq.files.netcdf_files import seal
 from uq.files.whole_files import reason, whole
 from uq.result import result_file
 from uq.result.workload import workload_of
@@ -26,6 +34,77 @@ from uq.study.definition import Study
 from uq.study.evaluate import Chunk
 from uq.study.installed_models import made_here
 from uq.study.row_sampling import Rows, rows
+from uq.text.literals import read_toml, toml
+
+
+def define(file: Any, ds: xr.Dataset, total: int) -> None:
+    """Write everything in a result but the rows."""
+    variables, attributes = xr.conventions.encode_dataset_coordinates(ds)
+    file.setncatts(attributes)
+    for dim, size in ds.sizes.items():
+        file.createDimension(dim, total if dim == "row" else size)
+    for name, variable in variables.items():
+        kind = str if variable.dtype.kind == "U" else variable.dtype
+        made = file.createVariable(
+            name, kind, variable.dims, fill_value=None if kind is str else False
+        )
+        made.setncatts(variable.attrs)
+        made.set_auto_maskandscale(False)
+        if "row" not in variable.dims:
+            made[...] = variable.values.astype(object) if kind is str else variable.values
+
+
+def place(file: Any, ds: xr.Dataset, blocks: Sequence[Block]) -> None:
+    """Write rows to their places."""
+    for name, variable in ds.variables.items():
+        if "row" in variable.dims:
+            done = 0
+            for start, stop in blocks:
+                file[name][start:stop] = variable.values[done : done + stop - start]
+                done += stop - start
+
+
+def made_by(records: Sequence[RowsRecord]) -> dict[str, str]:
+    """Return the processors and versions that computed the rows, as attributes of the result."""
+    names = dict.fromkeys(name for record in records for name in record.made)
+    return {
+        name: "; ".join(sorted({record.made.get(name, "unknown") for record in records}))
+        for name in names
+    }
+
+
+def variants_of(records: Sequence[RowsRecord]) -> list[dict[str, Any]]:
+    """Return the sets of settings that differ from the study's, ordered by first row."""
+    variants: list[dict[str, Any]] = [{}]
+    for record in sorted(records, key=lambda record: record.blocks):
+        if record.settings not in variants:
+            variants.append(record.settings)
+    return variants
+
+
+def rerun(variants: Sequence[Mapping[str, Any]], code: int, count: int) -> xr.Variable:
+    """Return which of these settings some rows were computed with, as a variable of a result."""
+    labels = ["no", *(f"changed-{i}" for i in range(1, len(variants)))]
+    attrs: dict[str, Any] = {
+        "role": "rerun",
+        "long_name": "whether a failed row was computed again with changed settings",
+        "flag_values": np.arange(len(variants), dtype=np.int16),
+        "flag_meanings": " ".join(labels),
+    }
+    attrs |= {f"changed_{i}": toml(variants[i]) for i in range(1, len(variants))}
+    return xr.Variable("row", np.full(count, code, np.int16), attrs)
+
+
+def by_settings(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], Mask]]:
+    """Yield the settings of rows that differ from the study's, and which rows have them."""
+    if "rerun" not in ds:
+        yield {}, np.ones(ds.sizes["row"], np.bool_)
+        return
+    codes = ds["rerun"].values
+    for code in np.unique(codes):
+        text = ds["rerun"].attrs.get(f"changed_{code}", "{}")
+        yield read_toml(f"settings = {text}")["settings"], codes == code
+
 
 _WRITING_SHARE = 1 / 20  # of the time, unless single chunks take longer
 _FIRST_COST = 0.01  # of writing [s], before it is known: a very short run writes once

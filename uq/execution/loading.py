@@ -19,7 +19,7 @@ from uq.errors import InputError, first_fault_alone
 from uq.execution.child import ModelSpec
 from uq.execution.isolation import Isolated
 from uq.execution.options import Say, ignore
-from uq.files.paths import cache_path
+from uq.files.whole_files import cache_path
 from uq.machines.returned import Returned, as_plain, from_plain, joined
 from uq.machines.row_by_row import RowByRow
 from uq.study.evaluate import RowFailure

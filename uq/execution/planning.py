@@ -12,9 +12,16 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from uq.execution.dispatch import CHUNK_SECONDS, GROWTH, first_chunk, good_chunk
 from uq.execution.environment import command, inherited
-from uq.execution.executor import first_rows_alone, in_one_process, processes
+from uq.execution.executor import (
+    CHUNK_SECONDS,
+    GROWTH,
+    first_chunk,
+    first_rows_alone,
+    good_chunk,
+    in_one_process,
+    processes,
+)
 from uq.execution.isolation import Action, Evaluate, Isolated, spec_of
 from uq.execution.options import RunOptions, Say, ignore
 from uq.execution.tally import row_bytes

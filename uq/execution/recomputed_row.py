@@ -9,14 +9,13 @@ import xarray as xr
 
 from uq.contract import Status, censored_name
 from uq.errors import InputError, first_fault_alone
+from uq.execution.disk_store import by_settings
 from uq.execution.isolation import Isolated, spec_of
 from uq.execution.loading import study_of_text
-from uq.execution.merge import by_settings
 from uq.result.one_row import Row, computed
 from uq.result.workload import workload_of
 from uq.sampling.named_values import fault_lines, read_settings
-from uq.study.changes import what_changed
-from uq.study.definition import Study
+from uq.study.definition import Study, what_changed
 from uq.study.installed_models import find_model, made_here
 from uq.study.row_sampling import row_block
 

@@ -13,20 +13,23 @@ from numpy.typing import NDArray
 
 from uq.contract import Status
 from uq.errors import InputError
-from uq.execution.chunk_file import blocks_of
-from uq.execution.disk_store import DiskStore
-from uq.execution.merge import by_settings
+from uq.execution.disk_store import DiskStore, by_settings
 from uq.execution.options import RunOptions, Say
-from uq.execution.records import History, RunRecord, without_overlap
-from uq.execution.row_folder import clear, folder_of, history, locked
-from uq.execution.tally import Failures, row_bytes
+from uq.execution.row_folder import (
+    History,
+    RunRecord,
+    clear,
+    folder_of,
+    history,
+    locked,
+    without_overlap,
+)
+from uq.execution.tally import Failures, blocks_of, row_bytes
 from uq.files.interrupts import undone
 from uq.files.whole_files import check_target
 from uq.result import result_file
-from uq.study.changes import refusal_to_extend, what_changed
-from uq.study.columns import columns_of
-from uq.study.definition import Study
-from uq.study.evaluate import Chunk
+from uq.study.definition import Study, refusal_to_extend, what_changed
+from uq.study.evaluate import Chunk, columns_of
 from uq.study.installed_models import is_other_code, made_here
 from uq.study.row_sampling import Rows, row_block, rows
 from uq.text.numbers import counted

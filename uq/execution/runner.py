@@ -12,21 +12,19 @@ from pathlib import Path
 import xarray as xr
 
 from uq.assess import stopping
-from uq.assess.stopping_status import out_of_reach
+from uq.assess.stopping import out_of_reach
 from uq.errors import InputError
 from uq.execution import disk_store, resuming, tally
-from uq.execution.dispatch import Dispatcher
-from uq.execution.executor import Executor
+from uq.execution.executor import Dispatcher, Executor
 from uq.execution.loading import load_study
 from uq.execution.options import Progress, Report, RunOptions, Say, ignore
 from uq.files import whole_files
 from uq.result import result_file
-from uq.result.commands import with_model
 from uq.result.result import Result
+from uq.result.result_file import with_model
 from uq.result.weights import has_weights
 from uq.result.workload import Workload, workload_of
-from uq.study.changes import refusal_to_extend, what_changed
-from uq.study.definition import Study
+from uq.study.definition import Study, refusal_to_extend, what_changed
 from uq.study.hints import hints
 from uq.study.installed_models import is_other_code
 from uq.study.reading import read_study_text

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Mask, Model, Output, Status, censored_name
 from uq.errors import InputError
 from uq.execution.isolation import Isolated, spec_of
-from uq.files.paths import cache_path
+from uq.files.whole_files import cache_path
 from uq.machines.row_by_row import RowByRow
 from uq.result.workload import workload_of
 from uq.sampling.truncation import ppf_within

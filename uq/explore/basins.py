@@ -1,9 +1,12 @@
-"""Basins of attraction of any model, computed like a study."""
+"""Basins of attraction of any model on a grid of its parameters, computed like a study."""
 
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
+from math import prod
+from operator import index
 from pathlib import Path
 from typing import Any
 
@@ -11,19 +14,189 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.contract import Model
+from uq.contract import Floats, Model
 from uq.errors import InputError
 from uq.execution import runner, tally
 from uq.execution.options import RunOptions
-from uq.explore.attractors import STANDARD_ERRORS, Compared, attractors
-from uq.explore.grid import Axis, ParameterGrid, grid_of
 from uq.files import whole_files
 from uq.files.netcdf_files import refuse_tricks
 from uq.result import result_file
 from uq.result.variables import error_name, outputs_of
 from uq.result.workload import Workload
-from uq.sampling.named_values import unknown_name
-from uq.study.row_sampling import Rows
+from uq.sampling.named_values import fault_lines, parameter_problem, read_settings, unknown_name
+from uq.study.installed_models import find_model, model_at, model_names
+from uq.study.row_sampling import Rows, row_seeds
+
+STANDARD_ERRORS = 4.0
+"""Of the difference between two values: a smaller difference is no gap."""
+
+
+Compared = tuple[Floats, Floats, float]
+"""Values of every row, shape (n,), of which NaN agrees with NaN and infinity with infinity; their
+standard errors, 0 where there are none; and the tolerance, relative to the largest finite magnitude
+among the values; 0: equal or not."""
+
+
+def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
+    """Return the number of the attractor of each row, the most frequent first.
+
+    Parameters
+    ----------
+    compared : sequence of Compared
+    rows : int
+
+    Returns
+    -------
+    ndarray of int32, shape (rows,)
+        Of equally frequent attractors, the first to occur has the lower number.
+    """
+    labels, count = np.zeros(rows, np.int64), 0
+    while count < (count := len(np.unique(labels))):
+        for values, errors, tolerance in compared:
+            labels = _parted(labels, values, errors, tolerance)
+    _, first, place, frequency = np.unique(
+        labels, return_index=True, return_inverse=True, return_counts=True
+    )
+    rank = np.empty(len(first), np.int32)
+    rank[np.lexsort((first, -frequency))] = np.arange(len(first))
+    return rank[place]
+
+
+def _parted(
+    labels: NDArray[np.int64], values: Floats, errors: Floats, tolerance: float
+) -> NDArray[np.int64]:
+    """Split each group of rows at the gaps of one output."""
+    size = np.abs(values[np.isfinite(values)]).max(initial=0.0)
+    order = np.lexsort((values, labels))
+    values, errors, groups = values[order], errors[order], labels[order]
+    lower, upper = values[:-1], values[1:]
+    slack = tolerance * size + STANDARD_ERRORS * np.hypot(errors[:-1], errors[1:])
+    with np.errstate(invalid="ignore"):
+        alike = (lower == upper) | (upper - lower <= slack) | (np.isnan(lower) & np.isnan(upper))
+    new = np.concatenate([[False], ~alike | (groups[:-1] != groups[1:])])[: len(labels)]
+    parted = np.empty_like(labels)
+    parted[order] = np.cumsum(new)
+    return parted
+
+
+Axis = tuple[float, float, int]
+"""First value, last value, number of values."""
+
+
+@dataclass(frozen=True)
+class ParameterGrid:
+    """Rows of a model on the points of a grid, the last axis running fastest.
+
+    Attributes
+    ----------
+    model : Model
+    reference : str
+        By which another process finds the model; empty if it cannot.
+    axes : dict of str to Axis
+        Of the parameters that vary.
+    constants : dict of str to float
+        All other parameters.
+    settings : object
+        An instance of ``model.settings``.
+    """
+
+    model: Model
+    reference: str
+    axes: Mapping[str, Axis]
+    constants: dict[str, float]
+    settings: Any
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values on each axis."""
+        return tuple(count for _, _, count in self.axes.values())
+
+    @property
+    def rows(self) -> int:
+        """Number of points."""
+        return prod(self.shape)
+
+    def values(self, name: str) -> Floats:
+        """Return the values along an axis."""
+        return np.linspace(*self.axes[name])
+
+    def block(self, start: int, stop: int) -> Rows:
+        """Return the rows start..stop, as in `uq.study.row_sampling.row_block`."""
+        number = np.arange(start, stop)
+        places = dict(zip(self.axes, np.unravel_index(number, self.shape), strict=True))
+        x = np.empty((len(number), len(self.model.parameter_names)))
+        for i, name in enumerate(self.model.parameter_names):
+            x[:, i] = self.values(name)[places[name]] if name in places else self.constants[name]
+        return Rows.without_design(x, row_seeds(0, number))
+
+
+def grid_of(
+    model: str | Model,
+    axes: Mapping[str, Axis],
+    fixed: Mapping[str, float],
+    settings: Mapping[str, Any],
+) -> ParameterGrid:
+    """Check and build a grid.
+
+    Parameters
+    ----------
+    model : str or Model
+    axes : dict of str to Axis
+    fixed : dict of str to float
+        Other parameters with values that are not nominal.
+    settings : dict
+        Numerical settings by name.
+
+    Returns
+    -------
+    ParameterGrid
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong, one line each.
+    """
+    if isinstance(model, str):
+        resolved, reference = model_at(model), model
+    else:
+        installed = model.name in model_names() and find_model(model.name) is model
+        resolved, reference = model, model.name if installed else ""
+    for argument, given in (("axes", axes), ("fixed", fixed), ("settings", settings)):
+        if not isinstance(given, Mapping):
+            raise InputError(f"{argument} must be a dictionary with names as keys: {given!r}")
+    faults = [] if axes else ["axes: nothing varies; give at least one parameter its values"]
+    wrong_axes = {name: _axis_problem(resolved, name, axis) for name, axis in axes.items()}
+    twice = dict.fromkeys(axes, "is among the axes too; keep one of the two")
+    wrong_fixed = {
+        name: twice.get(name) or parameter_problem(resolved, name, value)
+        for name, value in fixed.items()
+    }
+    frozen, wrong = read_settings(resolved, settings)
+    faults += fault_lines("axes: ", axes, wrong_axes) + fault_lines("fixed: ", fixed, wrong_fixed)
+    if faults := faults + fault_lines("settings: ", settings, wrong):
+        raise InputError(*faults)
+    return ParameterGrid(
+        resolved.given(frozen),
+        reference,
+        {name: (float(a), float(b), index(n)) for name, (a, b, n) in axes.items()},
+        {
+            name: float(x)
+            for name, x in (resolved.nominal | dict(fixed)).items()
+            if name not in axes
+        },
+        frozen,
+    )
+
+
+def _axis_problem(model: Model, name: str, axis: Any) -> str | None:
+    try:
+        first, last, count = axis
+        enough = index(count) >= 2
+    except (TypeError, ValueError):
+        return "must be (first value, last value, number of values)"
+    problem = parameter_problem(model, name, first) or parameter_problem(model, name, last)
+    ascends = enough and not problem and first < last < np.inf
+    return problem if ascends or problem else "must ascend, two finite values at least"
 
 
 def basins(

@@ -10,8 +10,7 @@ from scipy.special import ndtr
 
 from uq.contract import Floats, Output, Status, censored_name
 from uq.errors import InputError, nearest
-from uq.execution.dispatch import Dispatcher
-from uq.execution.executor import Executor
+from uq.execution.executor import Dispatcher, Executor
 from uq.execution.options import RunOptions
 from uq.execution.tally import MemoryStore
 from uq.result.workload import Workload

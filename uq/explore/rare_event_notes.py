@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from uq.explore.importance_sampling import is_above
 from uq.explore.limit_state import LimitState
 from uq.explore.subset_simulation import LEVEL_SHARE, SMALLEST
-from uq.explore.wide_search import is_above
 from uq.text.numbers import counted
 
 _ENDS = {

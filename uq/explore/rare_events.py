@@ -12,11 +12,16 @@ from uq.contract import Floats
 from uq.errors import InputError, nearest
 from uq.execution.loading import load_study
 from uq.execution.options import RunOptions
-from uq.explore.design_points import design_points, drawn_around
+from uq.explore.importance_sampling import (
+    WideSearch,
+    design_points,
+    drawn_around,
+    is_above,
+    wide_search,
+)
 from uq.explore.limit_state import LimitState, evaluator_of
 from uq.explore.rare_event_notes import caveats
 from uq.explore.subset_simulation import disagreement, subset_interval, subset_simulation
-from uq.explore.wide_search import WideSearch, is_above, wide_search
 from uq.stats.intervals import Ends, binomial_interval, log_scatter_interval
 from uq.study.definition import Study
 
@@ -121,7 +126,7 @@ def rare_event(
     without a hit, 4.6e-4.
 
     Both methods can miss a part of the event, subset simulation one behind a jump of the output.
-    As many rows as a level has are therefore drawn wide (`uq.explore.wide_search`).
+    As many rows as a level has are therefore drawn wide (`uq.explore.importance_sampling`).
     If their interval lies above that of the method, it is shown instead; if only their estimate
     does, and enough of them lie within the event, the high end is theirs, and a note says so. If
     replicates of subset simulation scatter more than their chains explain, the high end is what the

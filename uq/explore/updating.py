@@ -13,12 +13,11 @@ from uq.execution.runner import output_path, run_study
 from uq.explore.new_rows import Budget, enlarged, why_no_new_rows
 from uq.files.whole_files import check_target, write_result
 from uq.learning.importance import own_rows
-from uq.learning.inspection_log import Given, all_of, read
-from uq.learning.inspections import MOST_CV, Inspection
+from uq.learning.inspections import MOST_CV, Given, Inspection, all_of, read
 from uq.learning.observables import as_named, observables_of
 from uq.learning.posterior import posterior
+from uq.learning.posterior_checks import censoring, distrust
 from uq.learning.posterior_result import as_result, inspections_of, prior_of
-from uq.learning.trust import censoring, distrust
 from uq.result.result import Result
 from uq.result.result_file import open_result
 from uq.result.weights import MODEL_ERROR, has_weights

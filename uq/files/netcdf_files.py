@@ -1,4 +1,4 @@
-"""Files in netCDF that may come from anyone: examined before they are opened.
+"""NetCDF files from anyone: examined before they are opened, and sealed with a checksum.
 
 An HDF5 file can store data in other files, link to them and to itself, and claim more than it
 holds. Whoever opens it follows all that. Here its objects are listed with the low-level functions
@@ -6,6 +6,7 @@ of the HDF5 library that netCDF4 has loaded; nothing is followed and no value is
 """
 
 import ctypes
+import hashlib
 import os
 import stat
 from collections.abc import Callable, Iterator
@@ -14,6 +15,8 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 _HDF5, _CLASSIC = b"\x89HDF\r\n\x1a\n", b"CDF"
 _SLACK, _INFLATION = 100_000_000, 20  # bytes claimed, beyond a multiple of those on the disk
@@ -217,3 +220,64 @@ def _size_of(library: Any, dataset: int, label: str, most: int) -> int:
     if rank and chunk > _LARGEST_CHUNK and chunk > 2 * count * size:
         raise ValueError(f"{label} is stored in pieces of {chunk / 1e9:.3g} GB")
     return count * size
+
+
+CHECKSUM = "checksum"
+"""Attribute of the file."""
+
+_ROWS = 1_000_000  # read at a time
+
+
+def seal(path: Path) -> None:
+    """Store the checksum of a file as an attribute."""
+    import netCDF4
+
+    with netCDF4.Dataset(path, "a") as file:
+        file.setncattr(CHECKSUM, _checksum(file))
+
+
+def is_intact(path: Path) -> bool | None:
+    """Return whether a file is unchanged since it was sealed; None if it never was.
+
+    Raises
+    ------
+    Any of `uq.result.result_file.UNREADABLE`
+        When it cannot be read at all.
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path, "r") as file:
+        return file.getncattr(CHECKSUM) == _checksum(file) if CHECKSUM in file.ncattrs() else None
+
+
+def _checksum(file: Any) -> str:
+    """Return the SHA-256 of all variables and attributes but the checksum itself."""
+    whole = hashlib.sha256()
+    _add_attributes(whole, file)
+    for name in sorted(file.variables):
+        variable = file[name]
+        variable.set_auto_maskandscale(False)
+        whole.update(repr((name, variable.dimensions, variable.shape)).encode())
+        _add_attributes(whole, variable)
+        if variable.shape:
+            for start in range(0, variable.shape[0], _ROWS):
+                _add_values(whole, variable[start : start + _ROWS])
+        else:
+            _add_values(whole, variable[...])
+    return whole.hexdigest()
+
+
+def _add_attributes(whole: Any, owner: Any) -> None:
+    for name in sorted(owner.ncattrs()):
+        if name != CHECKSUM:
+            whole.update(name.encode())
+            _add_values(whole, owner.getncattr(name))
+
+
+def _add_values(whole: Any, values: Any) -> None:
+    array = np.asarray(values)
+    if array.dtype.kind in "OU":
+        whole.update(repr(array.tolist()).encode())
+    else:
+        whole.update(array.dtype.str.encode())
+        whole.update(np.ascontiguousarray(array).data)

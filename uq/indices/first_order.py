@@ -9,13 +9,13 @@ from uq.contract import Floats
 from uq.indices.given_data import DUMMIES, beside_nulls, null_of, one_kind
 from uq.indices.index import S1, Indices, RefusedError
 from uq.indices.measures import first_order
+from uq.indices.method import DesignSample
 from uq.indices.residual_variance import (
     Residual,
     ordered_residual_variance,
     residual_variance,
     variance,
 )
-from uq.indices.sample import DesignSample
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import Replicates, replicates_of_some, upper_probability
 from uq.stats.quantile_functions import student

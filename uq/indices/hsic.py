@@ -12,9 +12,8 @@ import numpy as np
 from uq.contract import Floats
 from uq.indices.given_data import beside_nulls, one_kind
 from uq.indices.index import IndexKind, Indices, RefusedError
-from uq.indices.measures import as_event
-from uq.indices.sample import DesignSample
-from uq.indices.slices import MOST_CATEGORIES
+from uq.indices.measures import MOST_CATEGORIES, as_event
+from uq.indices.method import DesignSample
 from uq.stats.estimate import Estimate
 from uq.stats.order_statistics import mid_ranks
 

@@ -7,22 +7,23 @@ where a design feeds it; tables, JSON, figures, reports and documentation show w
 from collections.abc import Mapping
 from functools import partial
 
-from uq.indices.fast import fast_indices
+from uq.indices.expansions import EXPLAINED, fast_indices, hdmr_indices
 from uq.indices.first_order import first_order_indices
-from uq.indices.given_data import MIN_ROWS, beside_nulls, one_kind
-from uq.indices.hdmr import EXPLAINED, hdmr_indices
+from uq.indices.given_data import (
+    MIN_ROWS,
+    beside_nulls,
+    one_kind,
+    quantile_indices,
+    without_optimism,
+)
+from uq.indices.groups import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
 from uq.indices.hsic import HSIC, MOST_ROWS, P, conditional_indices, target_indices
 from uq.indices.index import S1, S2, SHAPLEY, ST, IndexKind
 from uq.indices.measures import delta, first_order, ks_distances, pawn
-from uq.indices.method import SensitivityMethod
-from uq.indices.morris import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
-from uq.indices.quantile_oriented import quantile_indices, without_optimism
-from uq.indices.sample import DesignSample
+from uq.indices.method import DesignSample, SensitivityMethod
 from uq.indices.shapley import MIN_PATHS, shapley_indices
 from uq.indices.sobol import MIN_GROUPS, pilot, sobol_indices
-from uq.sampling.design import Design
-from uq.sampling.designs import DESIGNS
-from uq.sampling.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
+from uq.sampling.designs import CROSSED, CURVES, DESIGNS, PATHS, PLAIN, TRAJECTORIES, Design
 from uq.stats.estimate import Estimate
 
 DELTA = IndexKind("delta", "Borgonovo's delta")

@@ -1,15 +1,146 @@
-"""Shapley effects: shares of the variance that sum to one, whatever the interactions."""
+"""Shapley effects: shares of the variance that sum to one, estimated along paths."""
 
 import numpy as np
 
-from uq.contract import Floats
+from uq.contract import Floats, Mask
 from uq.errors import choices
 from uq.indices.index import ALL_NOISE, SHAPLEY, Indices, RefusedError
-from uq.indices.method import NO_VARIANCE, UNSEEN
-from uq.indices.paths import controlled, parts_of, paths_without_effect
-from uq.indices.sample import DesignSample
+from uq.indices.method import NO_VARIANCE, UNSEEN, DesignSample
+from uq.indices.polynomials import products, shapley_values, terms_of
 from uq.stats.estimate import Estimate
-from uq.stats.intervals import UNKNOWN, is_constant, scatter_interval
+from uq.stats.intervals import ROUNDING, UNKNOWN, is_constant, scatter_interval
+
+MIN_SEEN = 10
+"""With fewer paths an effect of the input itself cannot be excluded."""
+
+
+def parts_of(sample: DesignSample, y: Floats) -> Floats:
+    """Return the contribution of each input to half the squared change along each path.
+
+    Parameters
+    ----------
+    sample : DesignSample
+    y : ndarray, shape (n, k) or (n, k, e)
+        Any function of the rows of whole paths; its elements add up.
+
+    Returns
+    -------
+    ndarray, shape (n, d)
+        Unbiased for the Shapley values of its variance.
+    """
+    before, after = y[:, :-1], y[:, 1:]
+    steps = (y[:, :1] - (before + after) / 2) * (before - after)
+    steps = steps.reshape(*steps.shape[:2], -1).sum(axis=2)
+    return np.asarray(np.einsum("ns,nsp->np", steps, sample.direction[sample.whole] != 0))
+
+
+def changes_alone(sample: DesignSample) -> Mask:
+    """Return the mask of whole paths along which each input alone changes the output, shape (n, d).
+
+    An input shows this where it is the first to change: all others then keep their values.
+    """
+    y = sample.grouped[sample.whole]
+    moved = np.abs(y[:, 1] - y[:, 0]) > ROUNDING * np.abs(y).max()
+    moved = moved.reshape(len(y), -1).any(axis=1)  # some element of a whole output
+    return np.asarray((sample.direction[sample.whole][:, 0] != 0) & moved[:, None])
+
+
+def paths_without_effect(sample: DesignSample, name: str) -> int:
+    """Return how many paths show that a correlated input has no effect of its own; else 0.
+
+    Only paths along which the output changes are informative.
+    """
+    if not sample.correlated.get(name):
+        return 0
+    whole, place = sample.whole, list(sample.inputs).index(name)
+    if changes_alone(sample)[:, place].any():
+        return 0
+    y, x = sample.grouped[whole], sample.inputs[name][sample.groups[whole]]
+    first = sample.direction[whole][:, 0, place] != 0
+    moves = (y[:, -1] != y[:, 0]).reshape(len(y), -1).any(axis=1)
+    seen = int((first & (x[:, 1] != x[:, 0]) & moves).sum())
+    return seen if seen >= MIN_SEEN else 0
+
+
+FOLDS = 4
+"""Of the paths: the polynomial that serves on one is fitted to the rows of all others."""
+
+ROWS_EACH = 4
+"""Rows for each weight that is fitted to them."""
+
+MOST_TERMS = 250
+MOST_NUMBERS = 30_000_000
+"""In all products of all rows."""
+
+
+def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
+    """Correct the parts of the variance by a polynomial as control variate.
+
+    Parameters
+    ----------
+    sample : DesignSample
+        Of paths.
+    parts : ndarray, shape (n, d)
+        Of the output, on each whole path.
+
+    Returns
+    -------
+    parts : ndarray, shape (n, d)
+        With the same expectation, and less scatter where the output resembles a polynomial in the
+        normal scores: the errors of the polynomial's parts on the paths are subtracted, times the
+        coefficient of their regression, from 0 (of no use) to 1.
+    leverage : ndarray, shape (n, d)
+        Of each path in that regression: the part of its error that the regression hides.
+
+    Notes
+    -----
+    The method is that of control variates [1]_. Fitted to other paths, the polynomial is a given
+    one, whatever its fit, and the errors of its parts have mean zero.
+
+    References
+    ----------
+    .. [1] A. B. Owen, "Monte Carlo theory, methods and examples" (2013), section 8.9.
+    """
+    errors = _errors(sample, parts)
+    spread = errors - errors.mean(axis=0)
+    squares = (spread**2).sum(axis=0)
+    squares = np.where(squares > 0, squares, 1.0)
+    slopes = np.clip((spread * (parts - parts.mean(axis=0))).sum(axis=0) / squares, 0.0, 1.0)
+    return parts - slopes * errors, spread**2 / squares
+
+
+def _errors(sample: DesignSample, parts: Floats) -> Floats:
+    """Return the parts of a polynomial estimated on each path, less their exact values."""
+    errors = np.zeros_like(parts)
+    y = sample.grouped[sample.whole]
+    n, rows = y.shape[:2]
+    y = (y - y.mean(axis=(0, 1))).reshape(n, rows, -1)  # with the elements of a whole output
+    enough = n * rows * (1 - 1 / FOLDS) / ROWS_EACH
+    most = min(enough, MOST_TERMS, MOST_NUMBERS / (n * rows))
+    # Inputs that never change the output by themselves are left out: if they have no effect, paths
+    # show that exactly.
+    used = np.isfinite(sample.scores[0, 0, 0]) & changes_alone(sample).any(axis=0)
+    terms = terms_of(np.flatnonzero(used).tolist(), sample.matrix, most)
+    if not terms:
+        return errors
+    values = products(sample.scores[sample.whole], terms, sample.matrix)
+    values = np.concatenate([np.ones((n, rows, 1)), values], axis=2)
+    control = np.empty_like(y)
+    folds = [np.arange(n) % FOLDS == i for i in range(FOLDS)]
+    squares = np.stack([_products_of(values[fold], values[fold]) for fold in folds])
+    sums = np.stack([_products_of(values[fold], y[fold]) for fold in folds])
+    for fold, fold_squares, fold_sums in zip(folds, squares, sums, strict=True):
+        others = squares.sum(axis=0) - fold_squares, sums.sum(axis=0) - fold_sums
+        weights = np.linalg.lstsq(*others, rcond=None)[0]
+        control[fold] = values[fold] @ weights
+        errors[fold] -= shapley_values(weights[1:], terms, sample.matrix)
+    return errors + parts_of(sample, control)
+
+
+def _products_of(left: Floats, right: Floats) -> Floats:
+    """Return the cross products of columns, summed over paths and rows."""
+    return np.asarray(np.tensordot(left, right, axes=((0, 1), (0, 1))))
+
 
 MIN_PATHS = 32
 """With fewer paths Student's law does not give the interval of a mean."""
@@ -48,7 +179,7 @@ def shapley_indices(sample: DesignSample) -> Indices:
     (y - (before + after)/2) (before - after) over the steps of an input, is the input's Shapley
     effect times the variance. For independent inputs this is the estimator of [3]_. The sum over a
     path is (y - end)^2/2. A polynomial of known effects serves as control variate
-    (`uq.indices.paths`); a path's error is that from the regression on all others, "HC3" of
+    (`uq.indices.shapley`); a path's error is that from the regression on all others, "HC3" of
     [4]_.
 
     References

@@ -16,9 +16,8 @@ from uq.indices.groups import (
     with_difference,
 )
 from uq.indices.index import S1, S2, ST, IndexKind, Indices, RefusedError
-from uq.indices.method import NO_VARIANCE, UNSEEN
-from uq.indices.sample import DesignSample
-from uq.sampling.layouts import NOISE
+from uq.indices.method import NO_VARIANCE, UNSEEN, DesignSample
+from uq.sampling.designs import NOISE
 
 MIN_GROUPS = 8
 """Fewer groups than this do not give a useful index."""

@@ -10,12 +10,11 @@ import numpy as np
 
 from uq.assess.fact import Fact
 from uq.assess.population import Population
-from uq.assess.summary_json import quality_facts
+from uq.assess.summary_facts import quality_facts
 from uq.errors import InputError
-from uq.learning.epistemic_band import over_shared
-from uq.learning.information_gain import Taught, taught
 from uq.learning.inspections import Inspection
-from uq.learning.posterior import Posterior, posterior
+from uq.learning.posterior import Posterior, Taught, posterior, taught
+from uq.learning.posterior_checks import STRANGE, strangeness
 from uq.learning.posterior_inputs import (
     Confounded,
     InputLearnt,
@@ -25,8 +24,7 @@ from uq.learning.posterior_inputs import (
     quantiles,
 )
 from uq.learning.posterior_result import as_table, inspections_of, prior_of, unit_quality
-from uq.learning.prior_predictive import STRANGE, strangeness
-from uq.learning.remaining_life import ANY, Remaining, remaining
+from uq.learning.remaining_life import ANY, Remaining, over_shared, remaining
 from uq.result.result import AnyResult, Result
 from uq.result.weights import MODEL_ERROR
 from uq.stats import estimate_json

@@ -1,23 +1,93 @@
-"""The rows of a result as the inspections leave them: weighted, each with a scale of its lives."""
+"""The posterior of a result: weighted rows, information gains, contradictions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import special
 
-from uq.contract import Floats
-from uq.errors import InputError
-from uq.learning.contradiction import contradictions
-from uq.learning.evidence import Evidence, weigh
+from uq.contract import Floats, Mask
+from uq.errors import InputError, choices
+from uq.learning.evidence import Evidence, QuadratureGrid, on_wide_grids, weigh
 from uq.learning.inspections import Inspection
 from uq.learning.integrated_input import IntegratedScale
-from uq.learning.leave_one_out import log_worth
-from uq.learning.rows_as_units import WeightedRows, inspected, uninspected
-from uq.learning.shared_law import SharedLaw, shared_law
+from uq.learning.rows_as_units import WeightedRows, inspected, log_worth, uninspected
+from uq.learning.scale_posterior import SharedLaw, shared_law
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.result.result import Result
 from uq.sampling.levels import SHARED
 from uq.stats.importance_weights import Smoothed
+
+_WHOLE = "no row of this result agrees with"
+
+
+def contradictions(likelihoods: UnitLikelihoods, grids: Sequence[QuadratureGrid]) -> list[str]:
+    """Return messages that name the smallest set of inspections with which no row agrees.
+
+    Single inspections, else pairs of one unit, else all of a unit, else those of two units that
+    share a world or an integrated input.
+
+    Parameters
+    ----------
+    likelihoods : UnitLikelihoods
+    grids : sequence of QuadratureGrid
+        Of each inspected unit.
+    """
+    agree = [
+        {
+            inspection: likelihoods.of_inspection(inspection, unit, grid.values) > -np.inf
+            for inspection in inspections
+        }
+        for unit, (grid, inspections) in enumerate(zip(grids, likelihoods.inspections, strict=True))
+    ]
+    for size, all_of_them in ((1, "it"), (2, "both")):
+        if messages := [
+            f"{' and '.join(map(_described, chosen))}: {_WHOLE} {all_of_them}"
+            for unit in agree
+            for chosen in combinations(unit, size)
+            if not _agreeing(unit, chosen).any()
+        ]:
+            return messages
+    together = [_agreeing(unit, unit) for unit in agree]
+    if messages := [
+        f"unit {label}: {_WHOLE} all its inspections"
+        f" ({choices([inspection.where for inspection in unit])})"
+        for label, unit, rows in zip(likelihoods.labels, agree, together, strict=True)
+        if not rows.any()
+    ]:
+        return messages
+    worlds = [
+        _agreeing_worlds(rows, block, likelihoods)
+        for rows, block in zip(together, likelihoods.blocks, strict=True)
+    ]
+    pairs = combinations(zip(likelihoods.labels, agree, worlds, strict=True), 2)
+    return [
+        f"units {a} and {b}: {_WHOLE} the inspections of both"
+        f" ({choices([inspection.where for inspection in (*first, *second)])})"
+        for (a, first, of_a), (b, second, of_b) in pairs
+        if not (of_a & of_b).any()
+    ] or [f"{_WHOLE} the inspections"]
+
+
+def _agreeing(agree: Mapping[Inspection, Mask], chosen: Iterable[Inspection]) -> Mask:
+    """Return which rows agree with all chosen inspections of a unit, shape (rows, g)."""
+    return np.logical_and.reduce([agree[inspection] for inspection in chosen])
+
+
+def _described(inspection: Inspection) -> str:
+    return f"{inspection.where} (unit {inspection.unit}, {inspection.output}, {inspection.kind})"
+
+
+def _agreeing_worlds(rows: Mask, block: NDArray[np.intp], likelihoods: UnitLikelihoods) -> Mask:
+    """Return in which worlds, with which values of an input that all share, some row agrees."""
+    agreeing = np.zeros((likelihoods.worlds, rows.shape[1]), dtype=bool)
+    np.logical_or.at(agreeing, likelihoods.world[block], rows)
+    shared = likelihoods.shares_scale
+    return agreeing if shared else np.asarray(agreeing.any(axis=1, keepdims=True))
+
 
 NO_OTHERS = (
     "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
@@ -124,3 +194,60 @@ def posterior(rows: Result, inspections: Sequence[Inspection], model_cv: float =
     return Posterior(
         any_unit, units, scale, evidence, likelihoods, law, not_integrated, only_inspected
     )
+
+
+class Taught(NamedTuple):
+    """Information gain of an inspection, given all others.
+
+    Attributes
+    ----------
+    inspection : Inspection
+    bits : float
+        Relative entropy of what is known with it to what is known without it.
+    units : str
+        CF unit of what was inspected.
+    time_unit : str
+        Of the time of the inspection.
+    """
+
+    inspection: Inspection
+    bits: float
+    units: str
+    time_unit: str
+
+
+def taught(posterior: Posterior) -> Iterator[Taught]:
+    """Yield the information gain of each inspection, in their order.
+
+    The information gain about everything unknown, worlds and units, from the knowledge that all
+    other inspections leave [1]_.
+
+    References
+    ----------
+    .. [1] D. V. Lindley, "On a measure of the information provided by an experiment", Ann. Math.
+       Stat. 27, 986-1005 (1956).
+    """
+    likelihoods = posterior.likelihoods
+    evidence = on_wide_grids(posterior.evidence, likelihoods)
+    for unit, grid in enumerate(evidence.grids):
+        world = likelihoods.world[likelihoods.blocks[unit]]
+        size = np.bincount(world)[world]
+        rest = evidence.rest[unit][world] + (likelihoods.log_before(unit) - np.log(size))[:, None]
+        single = {
+            inspection: likelihoods.of_inspection(inspection, unit, grid.values)
+            for inspection in likelihoods.inspections[unit]
+        }
+        for inspection in single:
+            others = [log for other, log in single.items() if other != inspection]
+            bits = _gain(rest + sum(others, np.zeros(rest.shape)), single[inspection])
+            observable = likelihoods.observables[inspection]
+            yield Taught(inspection, bits, observable.unit, observable.time_unit)
+
+
+def _gain(before: Floats, log_likelihood: Floats) -> float:
+    """Return the relative entropy that a likelihood adds to unnormalised logarithms [bit]."""
+    after = before + log_likelihood
+    total = special.logsumexp(after)
+    share = np.exp(after - total)
+    mean = share[share > 0] @ log_likelihood[share > 0]
+    return float(max(mean - (total - special.logsumexp(before)), 0.0) / np.log(2))

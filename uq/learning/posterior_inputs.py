@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.assess.posterior_scale import learnt_input, moments_of_input
 from uq.assess.row_inputs import inputs_of
+from uq.assess.scale_laws import learnt_input, moments_of_input
 from uq.contract import Floats
 from uq.learning.importance import importance_of
 from uq.learning.posterior_result import every_unit, prior_of

@@ -10,8 +10,8 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from uq.assess.posterior_scale import SCORES, terms_at
 from uq.assess.row_inputs import inputs_of
+from uq.assess.scale_laws import SCORES, terms_at
 from uq.contract import Floats
 from uq.errors import InputError, choices, first_fault_alone, nearest
 from uq.learning.inspections import COLUMNS, Inspection, read_tables
@@ -87,7 +87,7 @@ def as_result(
         (inspected, sample, score): that law. ``learnt_law_pulls``, ``learnt_law_follows``
         (sample, term), ``unit_law_pulls`` (inspected, sample, term), ``learnt_law_scores``
         (score,): what the rows say together of one that all units share
-        (`uq.learning.shared_law`). Attributes: ``inspections``, and ``ledger``, a digest of
+        (`uq.learning.scale_posterior`). Attributes: ``inspections``, and ``ledger``, a digest of
         each.
     """
     if taken := [name for name in _WEIGHTS if name in rows.dataset.variables]:

@@ -15,6 +15,10 @@ import numpy as np
 from uq.contract import Floats, Model, Parameter, Status
 from uq.errors import InputError, one_line
 from uq.machines.fmu_description import (
+    FmuFile,
+    FmuOutputTable,
+    FmuParameterTable,
+    FmuTable,
     bounds_of,
     description_of,
     stamp_of,
@@ -22,11 +26,10 @@ from uq.machines.fmu_description import (
     unit_of_variable,
     variables_of,
 )
-from uq.machines.fmu_file import FmuFile, FmuOutputTable, FmuParameterTable, FmuTable
 from uq.machines.machine_file import content_of, read_as, refuse
 from uq.machines.returned import Censored, Returned, RowError, censored, checked
 from uq.machines.row_by_row import RowByRow, model_from
-from uq.machines.row_folders import Folders
+from uq.machines.row_resources import Folders
 from uq.sampling.input_faults import InputFault, unknown
 
 _LOG, _UNPACKED = "log.txt", "fmu"

@@ -13,7 +13,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from uq.errors import InputError, nearest, one_line
-from uq.files.paths import file_there, node
+from uq.files.whole_files import file_there, node
 from uq.machines.row_by_row import SEED
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml

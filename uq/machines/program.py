@@ -1,4 +1,4 @@
-"""A program as a machine: each row runs it once, in a folder of its own."""
+"""Program as a machine, each row in a folder of its own, and the choice between it and an FMU."""
 
 import errno
 import hashlib
@@ -15,14 +15,18 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from uq.contract import Model, Parameter, Status
-from uq.machines.child_processes import bound_files, end_descendants, ended_within
+from uq.machines.fmu import code_of_fmu, fmu_of
+from uq.machines.fmu_description import FmuFile
 from uq.machines.machine_file import (
     FOLDER,
     MachineFile,
     MachineTable,
     code_files,
     content_of,
+    data_of,
     filled,
     read_machine,
     template_of,
@@ -30,7 +34,7 @@ from uq.machines.machine_file import (
 from uq.machines.program_outputs import STDERR_FILE, STDOUT_FILE, value_in
 from uq.machines.returned import Returned, RowError, checked, from_plain
 from uq.machines.row_by_row import SEED, RowByRow, model_from
-from uq.machines.row_folders import Folders, size_of
+from uq.machines.row_resources import Folders, bound_files, end_descendants, ended_within, size_of
 
 _LAST = 300  # characters of the last line of a failed program
 _LOOK_SECONDS = 1.0  # between looks at the size of a folder
@@ -212,3 +216,41 @@ def _how_it_ended(code: int, meanings: Mapping[str, str], stderr_file: Path) -> 
         lines = file.read().decode(errors="replace").split("\n")
     last = next((line.strip() for line in reversed(lines) if line.strip()), "")
     return f"{text} ({last[:_LAST]})" if last else text
+
+
+def machine_of(path: Path) -> Model:
+    """Return the model of a machine file or FMU.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be used.
+    """
+    return fmu_of(path) if _is_fmu(path) else program_of(path)
+
+
+def code_of_machine(path: Path) -> str:
+    """Return a hash of all files that make up a machine.
+
+    Raises
+    ------
+    InputError
+        When one cannot be used.
+    """
+    return code_of_fmu(path) if _is_fmu(path) else code_of_program(path)
+
+
+def _is_fmu(path: Path) -> bool:
+    if path.suffix != ".toml":
+        return True
+    machine = data_of(path).get("machine")
+    return isinstance(machine, dict) and "fmu" in machine
+
+
+def machine_schema() -> dict[str, Any]:
+    """Return the JSON Schema of machine files (draft 7)."""
+    both: TypeAdapter[MachineFile | FmuFile] = TypeAdapter(MachineFile | FmuFile)
+    schema = both.json_schema(ref_template="#/definitions/{model}")
+    schema["definitions"] = schema.pop("$defs")
+    head = {"$schema": "http://json-schema.org/draft-07/schema#"}
+    return head | schema | {"title": "Machine of vibrolife"}

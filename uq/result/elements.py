@@ -19,8 +19,7 @@ from uq.result.nesting import is_nested, nesting_of
 from uq.result.result_file import failed, refuse_empty
 from uq.result.variables import outputs_of
 from uq.result.weights import LAW_FOLLOWS, LAW_PULLS, ROWS, has_rounds, largest_weight, row_weights
-from uq.sampling.designs import DESIGNS
-from uq.sampling.layouts import CURVES, NOISE
+from uq.sampling.designs import CURVES, DESIGNS, NOISE
 from uq.stats.clusters import Clusters, SharedInfluence
 from uq.stats.importance_weights import (
     Smoothed,

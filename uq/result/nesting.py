@@ -1,4 +1,4 @@
-"""Samples, units and repeats: which rows of a result belong together.
+"""Samples, units and repeats: which rows of a result belong together, and which rank inputs.
 
 Of a study with ``units`` or ``repeats`` each sample is a world: units that share its ``shared``
 inputs, each with ``own`` inputs of its own, each computed in several repeats that differ by chance.
@@ -12,7 +12,8 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from uq.contract import Floats
-from uq.text.numbers import counted
+from uq.sampling.designs import DESIGNS, PLAIN
+from uq.text.numbers import counted, grouped
 
 
 class Nesting(NamedTuple):
@@ -122,3 +123,41 @@ def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
     chosen = ds["group"].values < samples
     count = int(chosen.sum())
     return ds.isel(row=slice(count) if chosen[:count].all() else chosen)
+
+
+RANKED = 50_000
+"""Rows by which inputs are ranked where a design is larger: more hardly change their order."""
+
+
+def ranked_rows(ds: xr.Dataset) -> xr.Dataset:
+    """Return the rows that sensitivity indices of a result are estimated from.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+
+    Returns
+    -------
+    xarray.Dataset
+        The first samples of a large plain design, and as many imported rows at random, since these
+        may come in a meaningful order; else `ds` itself, also of a design that compares rows.
+    """
+    samples, rows = int(ds.attrs["samples"]), ds.sizes["row"]
+    design = DESIGNS[ds.attrs["design"]]
+    if rows <= RANKED or design.layout is not PLAIN:
+        return ds
+    if design.imported:
+        chosen = np.random.default_rng(0).choice(rows, RANKED, replace=False)
+        return ds.isel(row=np.sort(chosen)).load()
+    # Loaded: they are few, and read once for each target.
+    return first_samples(ds, max(RANKED * samples // rows, 1)).load()
+
+
+def ranked_in_words(ranked: xr.Dataset, ds: xr.Dataset) -> str:
+    """Return a phrase for the rows that are ranked: ``by the first 50 000 rows``; "" for all."""
+    if ranked is ds:
+        return ""
+    count = grouped(ranked.sizes["row"])
+    if DESIGNS[ds.attrs["design"]].imported:
+        return f"by {count} rows chosen at random"
+    return f"by the first {count} rows"

@@ -12,8 +12,7 @@ from uq.errors import InputError
 from uq.files.interrupts import in_background
 from uq.result.element import Element, elements_in
 from uq.sampling.named_values import fault_lines, parameter_problem, read_settings
-from uq.study.columns import failed_rows
-from uq.study.evaluate import Chunk, evaluate
+from uq.study.evaluate import Chunk, evaluate, failed_rows
 
 Evaluate = Callable[[Floats, NDArray[np.uint64]], Chunk]
 

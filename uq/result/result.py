@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Output
 from uq.errors import InputError, choices, nearest
-from uq.result.commands import file_of, model_option
 from uq.result.element import Element
 from uq.result.elements import (
     category_codes,
@@ -25,9 +24,16 @@ from uq.result.elements import (
     weights_of,
     why_no_statistics,
 )
-from uq.result.nesting import Nesting, first_samples, is_nested, nesting_of, one_of_each_sample
-from uq.result.ranked_rows import ranked_in_words, ranked_rows
-from uq.result.result_file import failed, open_result, refuse_empty, upgraded
+from uq.result.nesting import (
+    Nesting,
+    first_samples,
+    is_nested,
+    nesting_of,
+    one_of_each_sample,
+    ranked_in_words,
+    ranked_rows,
+)
+from uq.result.result_file import failed, file_of, model_option, open_result, refuse_empty, upgraded
 from uq.result.variables import outputs_of
 from uq.result.weights import (
     has_rounds,
@@ -327,7 +333,7 @@ class Result:
 
     @cached_property
     def ranked(self) -> "Result":
-        """The rows that rank inputs (`uq.result.ranked_rows.ranked_rows`)."""
+        """The rows that rank inputs (`uq.result.nesting.ranked_rows`)."""
         rows = ranked_rows(self.dataset)
         return self if rows is self.dataset else Result(rows)
 

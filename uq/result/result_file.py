@@ -8,6 +8,7 @@ clock, the host, chunks or workers.
 """
 
 import os
+import shlex
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,10 +20,8 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Model
 from uq.errors import InputError, choices, nearest
-from uq.files.netcdf_files import most_bytes, refuse_tricks
-from uq.files.paths import node
-from uq.files.seal import CHECKSUM
-from uq.result.commands import named
+from uq.files.netcdf_files import CHECKSUM, most_bytes, refuse_tricks
+from uq.files.whole_files import node
 from uq.result.soundness import unsound
 from uq.result.variables import (
     SCHEMA_VERSION,
@@ -35,14 +34,53 @@ from uq.result.variables import (
     places,
     study_attributes,
 )
-from uq.study.columns import failed_rows
-from uq.study.installed_models import made_here
+from uq.study.evaluate import failed_rows
+from uq.study.installed_models import made_here, model_names, without_returns
+from uq.study.model_files import file_with, shortened
 from uq.study.provenance import provenance
 from uq.text.literals import without_control
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
     from uq.study.row_sampling import Rows
+
+
+_FILE = "result_file"
+_MODEL = "model_reference"
+_NEAR = 3  # folders: the current one, the result's, and the one above
+
+
+def named(ds: xr.Dataset, file: str) -> xr.Dataset:
+    """Return a result whose commands name this file."""
+    ds.encoding[_FILE] = file
+    return ds
+
+
+def file_of(ds: xr.Dataset) -> str:
+    """Return the file of a result as a shell reads it, OUT if it is not recorded."""
+    return shlex.quote(str(ds.encoding.get(_FILE, "OUT")))
+
+
+def with_model(ds: xr.Dataset, reference: str) -> xr.Dataset:
+    """Return a result whose commands name its model as the user did."""
+    ds.encoding[_MODEL] = without_returns(reference)
+    return ds
+
+
+def model_option(ds: xr.Dataset) -> str:
+    """Return ``--model`` and a file, after a blank, for rows of a model that is not installed here.
+
+    The file that the user gave, one here or near the result that has the model, else FILE.
+    """
+    model = ds.attrs["model"]
+    given = ds.encoding.get(_MODEL, model)
+    if given != model:
+        return f" --model {shortened(given)}"
+    if model in model_names():
+        return ""
+    folders = [Path(), *Path(str(ds.encoding.get(_FILE, "."))).parents][:_NEAR]
+    return f" --model {file_with(model, folders) or 'FILE'}"
+
 
 UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, TypeError)
 """Exceptions that netCDF4 and xarray raise for damaged files."""

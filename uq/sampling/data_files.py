@@ -17,7 +17,7 @@ import numpy as np
 from uq.contract import Floats
 from uq.errors import nearest
 from uq.files.netcdf_files import refuse_tricks
-from uq.files.paths import node
+from uq.files.whole_files import node
 from uq.sampling.designs import IMPORTED
 from uq.sampling.input_faults import InputFault
 from uq.text.literals import key

@@ -2,30 +2,24 @@
 
 Reading order; each part imports only those above it:
 
-    beta_products         the share of rows that has ended by each time
     clusters              rows that are not independent
     estimate              one number with its interval, or the reason why there is none
     quantile_functions    quantile functions of the laws behind intervals
-    counting              the number of units of a fleet that have ended
-    exact_shares          the interval of a share estimated from few hits
     roots                 roots of a function of one variable
     jumps                 the error that jumps leave in the mean of designs that spread evenly
-    kaplan_meier          the share that outlives each time
     location_scale        maximum likelihood for Weibull and lognormal lives
     estimate_json         estimates as JSON
-    estimate_text         estimates as text: values, intervals, and bounds with failed rows
     two_samples           the difference and ratio of two estimates
     intervals             intervals of 95 % for means and shares
     control_variate       control variates
     group_sequential      the confidence of each of several checks
-    hall_intervals        skewness-corrected confidence intervals of a mean (Hall 1992)
     order_statistics      quantiles, their intervals, and tolerance bounds
-    survival_band         a simultaneous confidence band of a survival curve
+    survival_curves       survival curves of censored lives
     tails                 heaviness of the tails of an output, and thus the moments that exist
     uncertainty_exponent  the uncertainty exponent of the boundary between basins
     variance_components   shares of the variance of nested rows
     importance_weights    importance weights
     moments               mean and standard deviation with their intervals, where they exist
     weighted_means        weighted means of numbers between 0 and 1, with intervals
-    mixing_bounds         bounds on how a probability is distributed over worlds, from counts
+    counting              counts of ended units
 """

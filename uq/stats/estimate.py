@@ -1,7 +1,9 @@
-"""One number with its interval, or the reason why there is none."""
+"""One number with its interval, or the reason why there is none, and its text."""
 
 from dataclasses import dataclass, replace
-from math import isfinite, nan
+from math import floor, inf, isfinite, log10, nan
+
+from uq.text.numbers import TO_THESE_DIGITS, number, percent, percent_interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,3 +53,82 @@ class Estimate:
 
 
 NOTHING = Estimate()
+
+
+def value_text(
+    estimate: Estimate, end: str = "value", per: float = 1.0, resolution: float = 0.0
+) -> str:
+    """Return one number of an estimate, or why there is none.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    end : {"value", "low", "high"}
+    per : float
+        Divisor of the number: the length of a unit.
+    resolution : float
+        Of the digits, as `number` takes it, before the division.
+
+    Returns
+    -------
+    str
+    """
+    value = getattr(estimate, end)
+    if isfinite(value):
+        return number(value / per, resolution / per)
+    if value != inf:
+        return "-"
+    return "beyond the horizon" if end in estimate.beyond else "never"
+
+
+def interval_text(estimate: Estimate, per: float = 1.0, resolution: float = 0.0) -> str:
+    """Return the ends of an interval; "" where neither is known, or both are never."""
+    ends = [value_text(estimate, end, per, resolution) for end in ("low", "high")]
+    return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
+
+
+def failed_bounds_text(bounds: Estimate | None, per: float = 1.0) -> str:
+    """Return the bounds with failed rows at best and at worst; "" if no row failed."""
+    if bounds is None:
+        return ""
+    low, high = (value_text(bounds, end, per) for end in ("low", "high"))
+    if low == "-":
+        return "no bound" if high == "-" else f"up to {high}"
+    return f"from {low} on" if high == "-" else f"{low} to {high}"
+
+
+def rounded_text(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
+    """Return an estimate for a sentence, rounded to its accuracy, and its interval.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    per : float
+        Divisor of the numbers: the length of a unit.
+
+    Returns
+    -------
+    tuple of str
+        The interval is "" where there is none.
+    """
+    value, low, high = estimate.numbers
+    if not (isfinite(value) and estimate.has_interval and high > low):
+        text = f"{value / per:.3g}" if isfinite(value) else value_text(estimate, per=per)
+        return text, interval_text(estimate, per)
+    decimals = -floor(log10((high - low) / per / 3))
+    text, *ends = (_rounded(unrounded / per, decimals) for unrounded in estimate.numbers)
+    return text, " to ".join(ends)
+
+
+def _rounded(value: float, decimals: int) -> str:
+    rounded = round(value, decimals) + 0.0  # no minus sign before zero
+    return f"{rounded:.{decimals}f}" if 0 <= decimals <= 6 else number(rounded)
+
+
+def share_text(estimate: Estimate) -> str:
+    """Return a share in per cent, with its interval."""
+    text = percent(estimate.value)
+    if not estimate.has_interval:
+        return text
+    ends = percent_interval(estimate.low, estimate.high)
+    return f"{text} ({'95 % interval ' * (ends != TO_THESE_DIGITS)}{ends})"

@@ -14,7 +14,6 @@ from scipy import special
 from uq.contract import Floats
 from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
-from uq.stats.exact_shares import exact_interval
 from uq.stats.importance_weights import (
     HOPELESS,
     carries_little,
@@ -32,6 +31,7 @@ from uq.stats.intervals import (
     Ends,
     Replicates,
     beyond_outliers,
+    exact_interval,
     is_constant,
     outlier_shift,
     scatter_interval,

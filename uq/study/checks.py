@@ -8,10 +8,8 @@ from uq.contract import Model
 from uq.errors import choices, nearest
 from uq.indices.methods import designs_for, fed_by, kinds_with_intervals
 from uq.machines.row_by_row import RowByRow
-from uq.sampling.design import Design
-from uq.sampling.designs import DESIGNS
+from uq.sampling.designs import DESIGNS, PATHS, Design
 from uq.sampling.input_faults import InputFault, unknown
-from uq.sampling.layouts import PATHS
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.sampling.named_values import parameter_problem, read_settings, unknown_name
 from uq.text.element_names import place_of, places, whole_name

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
-from uq.files.paths import cache_path
+from uq.files.whole_files import cache_path
 from uq.machines.compilation import when_imported
 from uq.study.sources import DISTRIBUTION, digest, is_installed, own_packages, signature, sources_of
 

@@ -27,8 +27,7 @@ from pydantic_core.core_schema import no_info_plain_validator_function
 
 from uq.errors import nearest
 from uq.indices.methods import METHODS
-from uq.sampling.design import MAX_SAMPLES
-from uq.sampling.designs import DESIGNS
+from uq.sampling.designs import DESIGNS, MAX_SAMPLES
 from uq.sampling.law import LEVEL_SCHEMA, LIST, STRICT, Law, Level
 from uq.sampling.laws import any_law, law_of
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 from uq.contract import Model, Output
 from uq.indices.methods import METHODS, fed_by
 from uq.machines.row_by_row import RowByRow
-from uq.sampling.designs import DESIGNS
-from uq.sampling.layouts import PATHS, PLAIN
+from uq.sampling.designs import DESIGNS, PATHS, PLAIN
 from uq.stats.order_statistics import is_within, rows_for_bound, rows_to_reach
 from uq.stats.quantile_functions import student
 from uq.study.file import USUAL

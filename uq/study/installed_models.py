@@ -20,12 +20,11 @@ from typing import Any
 
 from uq.contract import Model
 from uq.errors import InputError, choices, described, nearest
-from uq.files.paths import file_there
+from uq.files.whole_files import file_there
 from uq.machines.function import is_machine, model_of
 from uq.machines.returned import Returned, as_plain, from_plain
 from uq.study.compiled_cache import keep_apart
-from uq.study.model_files import file_with
-from uq.study.namesakes import hidden_beside, namesake
+from uq.study.model_files import file_with, hidden_beside, namesake
 from uq.study.provenance import provenance
 from uq.study.sources import fingerprint, found_at, own_packages
 
@@ -91,7 +90,7 @@ def model_at(reference: str) -> Model:
         There is no such model, or its package cannot be imported.
     """
     if reference.endswith(_MACHINES):
-        from uq.machines.machine import machine_of
+        from uq.machines.program import machine_of
 
         return machine_of(Path(reference))
     plain, _, returns = reference.partition(_KNOWN_TO_RETURN)
@@ -308,7 +307,7 @@ def code_of(reference: str) -> str:
         The model has no source file.
     """
     if reference.endswith(_MACHINES):
-        from uq.machines.machine import code_of_machine
+        from uq.machines.program import code_of_machine
 
         return code_of_machine(Path(reference))
     if reference.startswith(_SERVERS):

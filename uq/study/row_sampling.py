@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats
-from uq.sampling.conditional_draws import conditional_paths
 from uq.sampling.data_files import numbers
-from uq.sampling.dependence import correlated
+from uq.sampling.dependence import conditional_paths, correlated
 from uq.sampling.designs import DESIGNS
 from uq.sampling.levels import coordinates, dimension
 from uq.sampling.truncation import cell_of, factor_ends, ppf_between, ppf_within

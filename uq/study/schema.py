@@ -10,8 +10,7 @@ from pydantic.json_schema import GenerateJsonSchema
 from uq.contract import Model
 from uq.errors import InputError
 from uq.indices.methods import fed_by
-from uq.sampling.design import MAX_SAMPLES, Design
-from uq.sampling.designs import DESIGNS
+from uq.sampling.designs import DESIGNS, MAX_SAMPLES, Design
 from uq.sampling.named_values import setting_types
 from uq.study.file import StudyFile
 from uq.study.installed_models import find_model, model_names

@@ -9,7 +9,7 @@ import uq.render.html
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.render.html.embedded_rows import rows_inside
-from uq.render.html.layout import templates
+from uq.render.html.page import templates
 from uq.result.result import Result
 
 CELLS = """[...document.querySelectorAll("PLACE table.counted tr[data-key]")].map(line => [

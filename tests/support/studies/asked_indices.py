@@ -6,9 +6,9 @@ import numpy as np
 from computed import computed, study_of
 
 from uq.assess import sensitivities as estimation
-from uq.assess.sensitivity_json import sensitivity_facts
+from uq.assess.sensitivity_table import sensitivity_facts
+from uq.indices.method import DesignSample
 from uq.indices.methods import METHODS
-from uq.indices.sample import DesignSample
 from uq.result.result import Result
 
 INPUTS = ("x1", "x2", "x3")

@@ -24,7 +24,7 @@ from scipy import stats
 from scipy.optimize import brentq
 
 from uq.assess.life_fit import fits_of
-from uq.assess.statistics.between_regimes import between_share
+from uq.assess.statistics.moments import between_share
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.survival import survival
 from uq.result.elements import elements_of

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from uq.assess.effects import effects
-from uq.assess.event_curve import event_curve
+from uq.assess.effects import effects, event_curve
 from uq.stats.clusters import Clusters
 
 RNG = np.random.default_rng(5)

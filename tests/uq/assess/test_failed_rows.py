@@ -10,8 +10,7 @@ from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.summary import summarise
 from uq.assess.summary_table import summary
 from uq.result.result import Result
-from uq.stats.estimate import Estimate
-from uq.stats.estimate_text import failed_bounds_text
+from uq.stats.estimate import Estimate, failed_bounds_text
 from uq.stats.intervals import share_interval
 
 ROWS = 1000

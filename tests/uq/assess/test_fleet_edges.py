@@ -5,8 +5,7 @@ import pytest
 from computed import computed, study_of
 from scipy import special, stats
 
-from uq.assess.fleet import fleet_of
-from uq.assess.fleet_json import fleet_facts
+from uq.assess.fleet import fleet_facts, fleet_of
 from uq.assess.random_effects import Noisy
 from uq.result.result import Result
 

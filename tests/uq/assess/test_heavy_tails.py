@@ -10,7 +10,7 @@ import uq
 from uq.assess.answer.answer import answer
 from uq.assess.expected_widths import expected_widths
 from uq.assess.findings import Findings
-from uq.assess.transforms import HEAVY, heaviness, tail_share
+from uq.assess.targets import HEAVY, heaviness, tail_share
 from uq.render.html.indices import sensitivity_of
 from uq.result.result import Result
 

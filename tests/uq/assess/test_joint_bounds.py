@@ -8,9 +8,8 @@ from computed import UNIFORM, as_text, computed, kinds, study_of, summarised
 from scipy import stats
 
 import uq
-from uq.assess.answer.answer import conclude
+from uq.assess.answer.answer import conclude, verdict
 from uq.assess.answer.quantities import quantities
-from uq.assess.answer.verdict import verdict
 from uq.assess.findings import Findings
 from uq.assess.joint_bounds import Needed, rows_needed
 from uq.errors import InputError

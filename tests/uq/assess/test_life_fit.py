@@ -7,7 +7,7 @@ from scipy import stats
 import uq
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_facts
+from uq.assess.summary_facts import summary_facts
 from uq.errors import InputError
 from uq.result.result import Result
 from uq.stats.location_scale import FAMILIES, anderson_darling, fit

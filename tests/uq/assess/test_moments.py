@@ -10,7 +10,7 @@ from scipy import stats
 
 from uq.assess.convergence import enough
 from uq.assess.expected_widths import expected_widths
-from uq.assess.statistics.between_regimes import between_share
+from uq.assess.statistics.moments import between_share
 from uq.assess.summary import summarise
 from uq.assess.summary_table import summary
 from uq.cli.summary_tables import show_summary

@@ -9,7 +9,7 @@ import uq as api
 from uq.assess.pairing import Kinship, kinship
 from uq.assess.sampled_inputs import drawn_inputs, laws_and_values
 from uq.assess.sensitivities import ONE_ROW, sensitivities
-from uq.assess.statistics.between_regimes import between_share
+from uq.assess.statistics.moments import between_share
 from uq.assess.stopping import interim_estimate
 from uq.assess.survival import survival
 from uq.errors import InputError

@@ -9,7 +9,7 @@ from computed import asking, kinds, summarised
 
 from uq.assess.answer.answer import answer
 from uq.assess.sensitivities import sensitivities
-from uq.assess.sensitivity_json import sensitivity_facts
+from uq.assess.sensitivity_table import sensitivity_facts
 from uq.render.html.page import page
 from uq.result.result import Result
 
@@ -17,7 +17,7 @@ from uq.result.result import Result
 @pytest.fixture
 def life(monkeypatch):
     """A life of 1,000 rows, as if these were too many to rank inputs by all of them."""
-    monkeypatch.setattr("uq.result.ranked_rows.RANKED", 400)
+    monkeypatch.setattr("uq.result.nesting.RANKED", 400)
     return asking(lifetime()[0], tolerance={"coverage": 0.95, "confidence": 0.95})
 
 

@@ -5,7 +5,7 @@ from computed import asking, kinds, linear, summarised, with_output, with_status
 from scipy import stats
 
 import uq
-from uq.assess.statistics.between_regimes import between_share
+from uq.assess.statistics.moments import between_share
 from uq.contract import Status
 from uq.errors import InputError
 from uq.indices.given_data import DUMMIES

@@ -9,7 +9,7 @@ from until_studies import study, tables
 
 from uq.assess import stopping
 from uq.errors import InputError
-from uq.execution import amending, local_cluster, row_folder, runner
+from uq.execution import amending, clusters, row_folder, runner
 from uq.execution.options import RunOptions
 from uq.execution.status import run_status
 from uq.result.result import Result
@@ -169,9 +169,9 @@ def test_the_budget_is_that_of_the_file(folder):
 @pytest.mark.slow
 def test_workers_stay_from_look_to_look(folder, monkeypatch):
     started = []
-    local = local_cluster.local_workers
+    local = clusters.local_workers
     monkeypatch.setattr(
-        local_cluster,
+        clusters,
         "local_workers",
         lambda count, *more: started.append(count) or local(count, *more),
     )

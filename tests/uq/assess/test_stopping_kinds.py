@@ -8,7 +8,7 @@ from until_studies import PAIR, WEAR, study, tables, wear
 from benchmarks.coverage import whole
 from uq.assess import stopping
 from uq.assess.sensitivities import sensitivities
-from uq.assess.sensitivity_json import sensitivity_facts
+from uq.assess.sensitivity_table import sensitivity_facts
 from uq.errors import InputError
 from uq.execution import runner
 from uq.result.result import Result

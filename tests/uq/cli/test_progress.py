@@ -13,7 +13,7 @@ from wordings import sentence
 import uq as api
 from uq.cli import progress
 from uq.cli.progress import details
-from uq.execution.dispatch import Progress
+from uq.execution.executor import Progress
 
 MUCH = Progress(
     123_456_789,

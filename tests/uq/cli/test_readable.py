@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from uq.cli import encodings
+from uq.cli import streams
 
 WRITTEN = [
     ("ascii", "s⁻¹ m² µm μm ≥ ≤ φ₁ Ω é –", "s-1 m2 um um >= <= phi1 Omega e -"),
@@ -18,7 +18,7 @@ WRITTEN = [
 @pytest.mark.parametrize(("encoding", "text", "expected"), WRITTEN)
 def test_a_character_that_cannot_be_encoded_is_written_readably(encoding, text, expected):
     stream = io.BytesIO()
-    with io.TextIOWrapper(stream, encoding, encodings.HANDLER, write_through=True) as written:
+    with io.TextIOWrapper(stream, encoding, streams.HANDLER, write_through=True) as written:
         written.write(text)
         assert stream.getvalue().decode(encoding) == expected
 

@@ -19,11 +19,10 @@ from in_memory import compute
 
 import uq
 from uq.errors import InputError
-from uq.execution import dask_task, dispatch, local_cluster, remote_cluster
+from uq.execution import clusters, dask_task, executor
 from uq.execution.child import ModelSpec
-from uq.execution.children import Children
 from uq.execution.dask_task import evaluate_rows
-from uq.execution.isolation import spec_of
+from uq.execution.isolation import Children, spec_of
 from uq.execution.workers import Workers
 from uq.result.workload import workload_of
 from uq.study import provenance
@@ -44,7 +43,7 @@ def workers():
 def cluster(**options):
     """Yield a cluster as somebody else may have started it."""
     how = {"processes": False, "protocol": "tcp://", "host": "127.0.0.1", "memory_limit": 0}
-    with local_cluster.scratch(), LocalCluster(dashboard_address=None, **how, **options) as there:
+    with clusters.scratch(), LocalCluster(dashboard_address=None, **how, **options) as there:
         yield there
 
 
@@ -103,7 +102,7 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
 def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
 ):
-    monkeypatch.setattr(dispatch, "CHUNK_SECONDS", 0.05)
+    monkeypatch.setattr(executor, "CHUNK_SECONDS", 0.05)
     monkeypatch.setattr("uq.execution.executor.SHORT_SECONDS", seconds)
     monkeypatch.setattr("dask.system.CPU_COUNT", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
@@ -135,7 +134,7 @@ def test_an_existing_cluster_is_used(write_study, tidy):
 def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
     study = load_study(write_study())
     with monkeypatch.context() as hasty:
-        hasty.setattr(remote_cluster, "_REMOTE_SECONDS", 1)
+        hasty.setattr(clusters, "_REMOTE_SECONDS", 1)
         for address, why in (
             ("tcp://127.0.0.1:9", "cannot connect: .+"),
             ("nonsense://x", "not an address such as tcp://host:8786"),
@@ -151,7 +150,7 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
 def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monkeypatch):
     study = load_study(write_study())
     other = provenance.versions() | {"numpy": "1.0", "Python": "2.7"}
-    monkeypatch.setattr(remote_cluster, "versions", lambda: other)
+    monkeypatch.setattr(clusters, "versions", lambda: other)
     with cluster(n_workers=1) as there:
         address = there.scheduler_address
         with pytest.raises(InputError) as refused:

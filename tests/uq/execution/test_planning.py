@@ -9,7 +9,7 @@ from computed import summarised
 from in_memory import compute
 
 from uq.assess.expected_widths import Widths, expected_widths
-from uq.cli.plan import _widths
+from uq.cli.check import _widths
 from uq.execution import planning, runner
 from uq.result.result import Result
 from uq.study.definition import load_study

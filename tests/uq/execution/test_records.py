@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uq.execution.records import RowsRecord, missing, understood, without_overlap
+from uq.execution.row_folder import RowsRecord, missing, understood, without_overlap
 from uq.files.journal import Journal, read
 
 

@@ -15,7 +15,7 @@ from wordings import sentence
 import uq
 from uq.contract import Status
 from uq.errors import InputError
-from uq.execution import dispatch, runner
+from uq.execution import executor, runner
 from uq.execution.options import RunOptions
 from uq.execution.tally import MemoryStore
 from uq.result import result_file
@@ -45,14 +45,14 @@ def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design
 
 @pytest.mark.parametrize(("seconds", "rows"), [(1e-3, 1024), (0.004, 1024), (0.1, 50), (20.0, 1)])
 def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_study, seconds, rows):
-    assert dispatch.good_chunk(workload_of(load_study(write_study())), row_seconds=seconds) == rows
+    assert executor.good_chunk(workload_of(load_study(write_study())), row_seconds=seconds) == rows
 
 
 @pytest.mark.parametrize(("block", "rows"), [(1, 1), (1024, 16)])
 def test_the_first_chunk_of_rows_computed_one_by_one_is_one_row(write_study, block, rows):
     workload = workload_of(load_study(write_study()))
     workload = workload._replace(model=replace(workload.model, block=block))
-    assert dispatch.first_chunk(workload) == rows
+    assert executor.first_chunk(workload) == rows
 
 
 @pytest.mark.parametrize("row_seconds", [2e-3, 0.5])
@@ -60,7 +60,7 @@ def test_the_first_chunk_of_rows_computed_one_by_one_is_one_row(write_study, blo
 def test_many_workers_get_chunks_that_the_scheduler_can_follow(write_study, threads, row_seconds):
     workload = workload_of(load_study(write_study()))
     workload = workload._replace(model=replace(workload.model, block=1))
-    size = dispatch.good_chunk(workload, row_seconds=row_seconds, threads=threads)
+    size = executor.good_chunk(workload, row_seconds=row_seconds, threads=threads)
     chunks_per_second = threads / (size * row_seconds)
     assert chunks_per_second == pytest.approx(50)
 
@@ -68,7 +68,7 @@ def test_many_workers_get_chunks_that_the_scheduler_can_follow(write_study, thre
 def test_the_inputs_of_all_chunks_sent_take_bounded_memory(write_study):
     workload = workload_of(load_study(write_study()))
     threads, row_bytes = 100_000, 3 * 8
-    size = dispatch.good_chunk(workload, row_seconds=1e-3, threads=threads)
+    size = executor.good_chunk(workload, row_seconds=1e-3, threads=threads)
     assert 1e9 < 2 * threads * size * row_bytes < 2e9
 
 
@@ -97,7 +97,7 @@ class OneGivenUp(list):
 def test_a_row_that_was_given_up_leaves_the_cost_of_a_row_as_it_was(write_study):
     workload = workload_of(load_study(write_study(samples=16)))
     options = RunOptions(chunk_rows=1, row_limit=60.0)
-    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher = executor.Dispatcher(workload, options, MemoryStore(workload), evaluate)
     dispatcher.finish_on(OneGivenUp(workload, threads=1))
     assert (dispatcher.left, dispatcher.row_seconds) == (0, 3.0)
 
@@ -112,7 +112,7 @@ def test_a_few_rows_at_the_end_are_no_chunk_of_their_own(write_study):
 
     workload = workload_of(load_study(write_study(samples=105)))
     options = RunOptions(chunk_rows=100)
-    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher = executor.Dispatcher(workload, options, MemoryStore(workload), evaluate)
     dispatcher.finish_on(Noted(workload, threads=2))
     assert dispatcher.left == 0
     assert min(sizes) >= 100 // 8
@@ -122,7 +122,7 @@ def test_progress_says_how_many_rows_are_under_way_before_the_first_returns(writ
     workload = workload_of(load_study(write_study(samples=40)))
     seen = []
     options = RunOptions(chunk_rows=10, progress=seen.append)
-    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher = executor.Dispatcher(workload, options, MemoryStore(workload), evaluate)
     dispatcher.finish_on(OneGivenUp(workload, threads=2))
     assert (seen[0].done, seen[0].under_way) == (0, 20)
     assert (seen[-1].done, seen[-1].under_way) == (40, 0)

@@ -16,7 +16,7 @@ import xarray as xr
 import uq
 from uq.contract import Model, Output, Parameter, Status
 from uq.errors import InputError
-from uq.explore.attractors import attractors
+from uq.explore.basins import attractors
 
 
 class Start(NamedTuple):

@@ -5,7 +5,7 @@ import pytest
 from rare_studies import LAST, WEAR, study
 from scipy import stats
 
-from uq.explore.design_points import design_points, drawn_around
+from uq.explore.importance_sampling import design_points, drawn_around
 from uq.explore.rare_events import rare_event
 from uq.explore.subset_simulation import SubsetReplicate, subset_interval, subset_simulation
 from uq.stats.intervals import log_scatter_interval

@@ -7,9 +7,9 @@ from rare_studies import branches, close, interval, linear, study
 from scipy import stats
 
 from uq.cli.rare_event import as_json, show
+from uq.explore.importance_sampling import WideSearch, wide_search
 from uq.explore.rare_events import _Outcome, estimate_of, rare_event
 from uq.explore.subset_simulation import SubsetReplicate, disagreement, subset_simulation
-from uq.explore.wide_search import WideSearch, wide_search
 from uq.stats.intervals import log_scatter_interval
 
 CLIFF = stats.norm.sf(4.0) + stats.norm.sf(5.0)

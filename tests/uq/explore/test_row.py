@@ -16,7 +16,7 @@ from noisy_studies import noisy
 import uq as api
 from uq.contract import Status
 from uq.errors import InputError
-from uq.explore.row_again import row_again
+from uq.explore.single_rows import row_again
 from uq.result.result import Result
 from uq.study.definition import study_from_text
 

@@ -6,7 +6,7 @@ import tempfile
 from unittest.mock import patch
 
 from uq import cli
-from uq.files.paths import cache_path
+from uq.files.whole_files import cache_path
 
 
 def test_without_a_home_no_folder_is_made_in_the_current_one(folder, monkeypatch):

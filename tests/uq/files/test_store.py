@@ -10,7 +10,7 @@ import xarray as xr
 from command_line import everything
 
 from uq.errors import InputError, RunError
-from uq.execution import chunk_file
+from uq.execution import tally
 from uq.files import whole_files
 from uq.files.interrupts import undo_all
 
@@ -37,7 +37,7 @@ def test_a_failed_write_leaves_nothing_and_keeps_what_was_there(folder):
 def test_a_chunk_that_cannot_be_written_leaves_nothing(folder):
     (folder / "0-3.rows").mkdir()  # a name that no file can take
     with pytest.raises(OSError, match="directory"):
-        chunk_file.save(folder / "0-3.rows", np.arange(3))
+        tally.save(folder / "0-3.rows", np.arange(3))
     assert everything(folder) == ["0-3.rows"]
 
 

@@ -11,9 +11,9 @@ from uq.assess.answer.answer import answer
 from uq.assess.answer.rankings import unexplained
 from uq.assess.sensitivities import methods
 from uq.indices.index import S1, RefusedError
+from uq.indices.method import DesignSample
 from uq.indices.methods import METHODS, fed_by
 from uq.indices.residual_variance import residual_variance
-from uq.indices.sample import DesignSample
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
 

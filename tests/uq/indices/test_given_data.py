@@ -13,8 +13,8 @@ from uq.assess import sensitivities as module
 from uq.assess.sensitivity_table import sensitivity
 from uq.errors import InputError
 from uq.indices.index import RefusedError
+from uq.indices.method import DesignSample
 from uq.indices.methods import METHODS
-from uq.indices.sample import DesignSample
 from uq.result.result import Result
 
 ISHIGAMI = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}

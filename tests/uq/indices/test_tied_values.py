@@ -7,8 +7,7 @@ from computed import asking, linear, with_output
 
 from uq import open_result
 from uq.indices.index import RefusedError
-from uq.indices.measures import first_order
-from uq.indices.slices import slice_of
+from uq.indices.measures import first_order, slice_of
 from uq.plots import index_bars
 
 N = 3000

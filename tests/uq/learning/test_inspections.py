@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 from uq.errors import InputError
-from uq.learning.inspection_log import all_of
-from uq.learning.inspection_log import read as read_file
-from uq.learning.inspections import Inspection, InspectionKind, read_inspections
+from uq.learning.inspections import Inspection, InspectionKind, all_of, read_inspections
+from uq.learning.inspections import read as read_file
 
 HEAD = "unit,time,output,kind,value,sd,cv,detection_50,detection_90\n"
 FILE = Path("found.csv")

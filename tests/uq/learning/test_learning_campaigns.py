@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from benchmarks.campaigns import apart, campaign, worlds
-from uq.learning.epistemic_band import over_shared
 from uq.learning.posterior import posterior
 from uq.learning.posterior_result import as_result
+from uq.learning.remaining_life import over_shared
 from uq.result.result import Result
 
 CAMPAIGNS = 200

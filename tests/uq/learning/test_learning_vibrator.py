@@ -9,7 +9,7 @@ from computed import computed
 
 from uq.learning.inspections import read_tables
 from uq.learning.posterior import posterior
-from uq.learning.trust import distrust
+from uq.learning.posterior_checks import distrust
 from uq.result.result import Result
 from uq.study.definition import load_study
 

@@ -6,13 +6,12 @@ from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
 from uq.assess.population import Population
-from uq.assess.posterior_scale import LearntScale
 from uq.assess.row_inputs import inputs_of
-from uq.assess.scale_laws import ConditionalScale
+from uq.assess.scale_laws import ConditionalScale, LearntScale
 from uq.assess.scaling import population
 from uq.explore.updating import update
-from uq.learning.dependent_outputs import dependent_outputs
 from uq.learning.inspections import read_tables
+from uq.learning.integrated_input import dependent_outputs
 from uq.learning.posterior import posterior
 from uq.learning.posterior_inputs import inputs_learnt
 from uq.learning.posterior_result import as_unit

@@ -5,7 +5,7 @@ import pytest
 
 import uq as package
 from uq.contract import Status
-from uq.machines.compiled_function import Compiled
+from uq.machines.function import Compiled
 from uq.machines.row_by_row import RowByRow
 from uq.study.installed_models import model_at
 

@@ -13,8 +13,7 @@ from own_study import own_study
 
 from uq.contract import Status
 from uq.machines.fmu import reduced
-from uq.machines.fmu_description import cf_unit
-from uq.machines.fmu_file import FmuOutputTable
+from uq.machines.fmu_description import FmuOutputTable, cf_unit
 from uq.machines.returned import Censored
 from uq.study.installed_models import model_at
 

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-import uq.machines.json_requests
+import uq.machines.serving
 from models.analytic import EXPONENTIAL_WEAR as WEAR
 from uq.machines.serving import server_of
 
@@ -32,7 +32,7 @@ OK = {"name": "exponential-wear", "input": [[1e-9, 1e-4, 0]]}
 @pytest.fixture
 def sent(monkeypatch):
     """Return a function that sends bytes to a server and returns status and answer."""
-    monkeypatch.setattr(uq.machines.json_requests, "_SECONDS", 0.3)
+    monkeypatch.setattr(uq.machines.serving, "_SECONDS", 0.3)
     server = server_of(WEAR, port=0)
     threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
 

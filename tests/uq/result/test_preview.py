@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from computed import UNIFORM, as_text
 
-from uq.result.preview import Preview
-from uq.result.workload import workload_of
+from uq.result.workload import Preview, workload_of
 from uq.study.definition import study_from_text
 from uq.study.evaluate import evaluate
 from uq.study.row_sampling import row_block

@@ -13,13 +13,13 @@ from in_memory import compute
 
 import uq
 from uq.assess.summary import summarise
-from uq.assess.summary_json import summary_facts
+from uq.assess.summary_facts import summary_facts
 from uq.contract import Status
 from uq.errors import InputError
 from uq.execution import runner
-from uq.explore.simulation import simulate
+from uq.explore.single_rows import simulate
 from uq.files import whole_files
-from uq.files.seal import CHECKSUM
+from uq.files.netcdf_files import CHECKSUM
 from uq.render.html.dossier.chapters import dossier
 from uq.render.html.page import page
 from uq.result import result_file

@@ -183,7 +183,7 @@ def test_a_failure_of_the_system_is_not_called_a_damaged_file(uq, result, monkey
     def fail(*arguments, **options):
         raise OSError(24, "Too many open files", "out.nc")
 
-    monkeypatch.setattr("uq.files.seal.is_intact", fail)
+    monkeypatch.setattr("uq.files.netcdf_files.is_intact", fail)
     assert "has changed" not in uq("summary", result).err
     monkeypatch.setattr("uq.result.result_file.xr.open_dataset", fail)
     assert "out.nc: cannot be read: Too many open files;" in uq("summary", result).err

@@ -9,7 +9,7 @@ from input_studies import BELL, UNIFORM, inputs_of, tables
 from scipy import stats
 
 from benchmarks.coverage import dependent
-from uq.sampling.conditional_draws import conditional_paths
+from uq.sampling.dependence import conditional_paths
 from uq.sampling.designs import DESIGNS
 from uq.study.row_sampling import row_block, rows
 

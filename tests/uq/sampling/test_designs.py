@@ -9,8 +9,7 @@ from SALib.sample import sobol as salib_sobol
 from scipy.stats import kstest, qmc
 from wordings import sentence
 
-from uq.sampling.designs import DESIGNS
-from uq.sampling.layouts import CURVES, TRAJECTORIES
+from uq.sampling.designs import CURVES, DESIGNS, TRAJECTORIES
 from uq.sampling.unit_cube import STEP, replicate_seed
 
 SIZE = 64

@@ -13,7 +13,7 @@ from uq.result.nesting import nesting_of, one_of_each_sample
 from uq.result.result import Result
 from uq.result.result_file import relabel
 from uq.sampling.levels import coordinates, dimension
-from uq.study.changes import what_changed
+from uq.study.definition import what_changed
 from uq.study.row_sampling import row_block, rows
 from uq.study.schema import json_schema
 

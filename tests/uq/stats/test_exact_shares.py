@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from uq.stats.exact_shares import FEW, exact_interval
-from uq.stats.intervals import binomial_interval, share_interval
+from uq.stats.intervals import FEW, binomial_interval, exact_interval, share_interval
 
 ROWS = 2000
 HITS = np.arange(ROWS + 1)

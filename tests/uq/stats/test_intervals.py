@@ -3,8 +3,8 @@ import pytest
 from scipy import stats
 
 from uq.stats import intervals
-from uq.stats.hall_intervals import corrected_mean_interval, hall_interval
 from uq.stats.intervals import mean_interval, share_interval
+from uq.stats.moments import corrected_mean_interval, hall_interval
 from uq.stats.order_statistics import quantile, quantile_interval, rows_for_bound, tolerance_bounds
 
 RNG = np.random.default_rng(3)

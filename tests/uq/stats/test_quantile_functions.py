@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from uq.stats import quantile_functions
-from uq.stats.exact_shares import exact_interval
+from uq.stats.intervals import exact_interval
 from uq.stats.tails import _distance
 
 TAILS = (0.005, 0.025, 0.05, 0.5, 0.95, 0.975, 0.995)

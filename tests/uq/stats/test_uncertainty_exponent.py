@@ -19,7 +19,7 @@ from benchmarks.coverage.basins import (
     estimates,
     flat,
 )
-from uq.assess.regime_boundary import boundary, in_words
+from uq.assess.regimes import boundary, in_words
 from uq.result.result import Result
 from uq.stats.uncertainty_exponent import FARTHEST, uncertainty_exponent
 

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from own_study import own_study
 
-from uq.result.commands import model_option
-from uq.result.result_file import open_result
+from uq.result.result_file import model_option, open_result
 from uq.study.model_files import file_with
 
 PAD = """

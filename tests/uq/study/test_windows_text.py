@@ -8,7 +8,7 @@ from computed import as_text
 from input_studies import UNIFORM, tables
 from own_machines import WEAR
 
-from uq.learning.inspection_log import read
+from uq.learning.inspections import read
 from uq.machines.machine_file import OutputTable
 from uq.machines.program_outputs import value_in
 from uq.study.definition import load_study

@@ -4,11 +4,10 @@ from math import inf, nan
 
 import pytest
 
+from uq.indices.groups import MU, MU_STAR
 from uq.indices.index import S1, ST
-from uq.indices.morris import MU, MU_STAR
 from uq.sampling.laws import law_of
-from uq.stats.estimate import Estimate
-from uq.stats.estimate_text import interval_text, rounded_text, share_text, value_text
+from uq.stats.estimate import Estimate, interval_text, rounded_text, share_text, value_text
 from uq.text.numbers import (
     capitalized,
     counted,

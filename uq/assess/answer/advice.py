@@ -4,15 +4,13 @@ from collections.abc import Iterator, Sequence
 from math import ceil, isfinite, isinf, isnan
 
 from uq.assess.answer.contributions import Contribution
-from uq.assess.answer.facts import Answer
 from uq.assess.answer.levels import VarianceComponents
 from uq.assess.answer.parts import Event, Quantity
 from uq.assess.answer.remedies import Advice
-from uq.assess.answer.sample_size import MOST, bounds_unsettled
-from uq.assess.answer.sources import ASSUMED, CHOSEN, mark_of
-from uq.assess.answer.sufficiency import Enough, needed
+from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.sufficiency import MOST, Enough, bounds_unsettled, needed
 from uq.assess.answer.tighter_tolerances import tighten
-from uq.assess.answer.wording import called, called_together, share_text
+from uq.assess.answer.wording import ASSUMED, CHOSEN, called, called_together, mark_of, share_text
 from uq.assess.findings import Findings
 from uq.result.result import Result
 from uq.sampling.levels import CHANCE

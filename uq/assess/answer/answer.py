@@ -1,18 +1,17 @@
-"""The answer of a study, computed once from what is known of its result."""
+"""The answer of a study, computed once from its assessments, and the verdict on its rows."""
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import isfinite
 from weakref import WeakKeyDictionary
 
 from uq.assess.answer.advice import advise
-from uq.assess.answer.assumptions import assumptions
-from uq.assess.answer.facts import Answer
-from uq.assess.answer.levels import VarianceComponents, levels_of, starts_alike
+from uq.assess.answer.levels import VarianceComponents, levels_of, mixing, starts_alike
 from uq.assess.answer.parts import Event
 from uq.assess.answer.quantities import event, only_ranked, quantities
-from uq.assess.answer.regime_mixing import mixing
-from uq.assess.answer.sufficiency import enough_of
-from uq.assess.answer.wording import called
+from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.sufficiency import enough_of, settled
+from uq.assess.answer.wording import assumptions, called, sentence
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.result.result import AnyResult, Result
@@ -141,3 +140,38 @@ def regimes_of(findings: Findings) -> Iterator[Event]:
         len(shares) > 1
     ):
         yield event(findings, f"P(regime={statistic.label})", statistic.label, statistic)
+
+
+def verdict(findings: Findings, output: str | None = None) -> list[str]:
+    """Return the verdict on the sample size in sentences, the least settled first.
+
+    Parameters
+    ----------
+    findings : Findings
+    output : str, optional
+        Only for this output, or this element of one.
+    """
+    result = findings.result
+    if output is None:
+        answer = without_advice(findings)
+        asked, enough = answer.quantities, answer.enough
+    else:
+        asked = tuple(
+            quantity
+            for quantity in quantities(findings)
+            if output in (quantity.name, quantity.output)
+        )
+        enough = enough_of(findings, asked)
+    if not len(result):
+        return []
+    if enough.unknown:
+        return [f"Whether the rows are enough is not known: {enough.unknown}."]
+    if not enough.every:
+        return ["Enough rows: what the study asks is settled."] if asked else []
+    lines = [
+        f"Not enough rows: {settled(clause, factor, result)}"
+        if isfinite(factor)
+        else f"{sentence(clause)} More rows would not help."
+        for clause, factor in enough.every
+    ]
+    return lines if enough.question else ["Enough rows for what the study is about.", *lines]

@@ -1,19 +1,21 @@
-"""Variance components: shared by units, own to each unit, or changing each time."""
+"""Variance components by level, and how intermingled the regimes are."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isnan
 
 from uq.assess.answer.contributions import Ranking
-from uq.assess.answer.wording import called, joined, sentence, share_text
+from uq.assess.answer.wording import called, joined, rounded, sentence, share_text
 from uq.assess.fact import Fact
 from uq.assess.findings import Findings
-from uq.assess.regime_switching import switching
+from uq.assess.level_shares import switching
+from uq.assess.regimes import compared_rows, still_uncertain
 from uq.assess.targets import FORMS, split_name
 from uq.result.result import Result
 from uq.sampling.levels import CHANCE, LEVELS, OWN, SHARED
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
+from uq.stats.uncertainty_exponent import uncertainty_exponent
 from uq.stats.variance_components import nested_shares
 
 _MOST_NAMED = 4
@@ -208,3 +210,44 @@ def starts_alike(result: Result) -> str:
     named = joined([called(str(name)) for name in starts])
     verb = "is" if len(starts) == 1 else "are"
     return f"Whether the start decides the regime is not known: {named} {verb} fixed."
+
+
+def intermingled(exponent: Estimate, rows: Result | None = None) -> Fact:
+    """Return how intermingled the regimes are; without members if their boundary may be smooth.
+
+    Parameters
+    ----------
+    exponent : Estimate
+        The uncertainty exponent of the boundary between them.
+    rows : Result, optional
+        The rows that it is computed from.
+
+    Returns
+    -------
+    Fact
+        ``uncertainty_exponent``, and ``left``: the share of uncertain outcomes that remain so if
+        all inputs are known twice as well; both with ends.
+    """
+    if not (exponent.has_interval and exponent.high < 1):
+        return Fact({})
+    left = still_uncertain(exponent)
+    text = (
+        f"The regimes are intermingled: with all inputs known twice as well, {share_text(left)} of"
+        " the uncertain outcomes would stay uncertain; between smooth boundaries, 50 %"
+        f" (uncertainty exponent {rounded(exponent.value)})."
+    )
+    numbers = {
+        f"{name}{end}": value
+        for name, estimate in (("uncertainty_exponent", exponent), ("left", left))
+        for end, value in zip(("", "_low", "_high"), estimate.numbers, strict=True)
+    }
+    mentions = (("left",),)
+    return Fact({"sentence": text} | numbers, (uncertainty_exponent,), rows=rows, mentions=mentions)
+
+
+def mixing(findings: Findings) -> Fact:
+    """Return how intermingled the regimes of a result are."""
+    boundary = findings.boundary
+    if boundary is None:
+        return Fact({})
+    return intermingled(boundary.estimate, compared_rows(findings.result))

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from math import inf, nan
 
 from uq.assess.answer.wording import DisplayUnit, called, sentence
-from uq.assess.event_curve import EventCurve, event_curve
+from uq.assess.effects import EventCurve, event_curve
 from uq.assess.fact import Fact
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate

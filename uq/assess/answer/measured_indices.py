@@ -8,14 +8,14 @@ import numpy as np
 
 from uq.assess.chosen_targets import chosen
 from uq.assess.design_sample import sample_of
-from uq.assess.independent_inputs import why_dependent
+from uq.assess.row_inputs import why_dependent
 from uq.assess.sensitivities import TargetIndices, methods
 from uq.indices.given_data import MIN_ROWS
 from uq.indices.index import IndexKind, Null, RefusedError
 from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS, fed_by
 from uq.result.result import Result
-from uq.sampling.layouts import PLAIN
+from uq.sampling.designs import PLAIN
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import scatter_interval
 

@@ -11,7 +11,7 @@ from uq.assess.answer.limits import CURVE_FUNCTIONS, Limit, limit_of
 from uq.assess.answer.repeat_interval import repeated_quantile, repeated_share
 from uq.assess.answer.tolerance_bound import Range, ToleranceBound
 from uq.assess.answer.wording import DisplayUnit, called_together, sentence, share_text
-from uq.assess.event_curve import EventCurve
+from uq.assess.effects import EventCurve
 from uq.assess.fact import Fact, Functions
 from uq.assess.statistic import Statistic
 from uq.result.result import Result

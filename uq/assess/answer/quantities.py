@@ -17,20 +17,26 @@ from uq.assess.answer.promised_bounds import (
     best_quantile,
     end_verb,
     functions_of,
+    own_error_of,
     promise_of,
     quantile_of,
     without_value,
 )
 from uq.assess.answer.rankings import ranking_of
-from uq.assess.answer.solver_error import own_error_of
-from uq.assess.answer.sources import ASSUMED, mark_of
 from uq.assess.answer.tolerance_bound import Range
-from uq.assess.answer.wording import DisplayUnit, element_called, unit_for, unit_of_input
+from uq.assess.answer.wording import (
+    ASSUMED,
+    DisplayUnit,
+    element_called,
+    mark_of,
+    unit_for,
+    unit_of_input,
+)
 from uq.assess.chosen_targets import chosen
-from uq.assess.event_curve import EventCurve, event_curve
+from uq.assess.effects import EventCurve, event_curve
 from uq.assess.findings import Findings
-from uq.assess.independent_inputs import independent_inputs
 from uq.assess.population import Population
+from uq.assess.row_inputs import independent_inputs
 from uq.assess.statistic import Context, Statistic
 from uq.assess.statistics.counts import never_ending
 from uq.assess.statistics.quantiles import B_LIVES, quantiles
@@ -45,7 +51,7 @@ from uq.stats.estimate import NOTHING
 from uq.stats.intervals import share_interval
 from uq.study.file import AnalysisTable
 from uq.text.numbers import threshold
-from uq.text.symbols import readable
+from uq.text.units import readable
 
 LOW, HIGH = 0.05, 0.95
 """Probabilities of the ends of the likely range."""

@@ -17,7 +17,7 @@ from uq.assess.answer.wording import DisplayUnit, called, twin_of, unit_of_input
 from uq.assess.chosen_targets import chosen
 from uq.assess.effects import Effect, effects
 from uq.assess.findings import Findings
-from uq.assess.independent_inputs import independent_inputs, why_dependent
+from uq.assess.row_inputs import independent_inputs, why_dependent
 from uq.assess.targets import FORMS, IndexTarget, split_name
 from uq.errors import choices
 from uq.indices.index import S1, ST, IndexKind, Indices

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
-from uq.assess.answer.sample_size import unsettled
+from uq.assess.answer.sufficiency import unsettled
 from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import DisplayUnit, called_together, joined
 from uq.assess.fact import Fact

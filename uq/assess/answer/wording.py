@@ -1,16 +1,57 @@
-"""Inputs and elements by their names, and numbers in the units that a person would use."""
+"""Inputs and outputs in words, with the quality of their sources and the units of their numbers."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
 from math import ceil, floor, isfinite, log10
 from typing import NamedTuple
 
+from uq.assess.fact import Fact
+from uq.assess.targets import split_name
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
-from uq.text.numbers import capitalized, digits, percent, percent_interval
-from uq.text.symbols import readable
-from uq.text.units import beside, powers, unit_of
+from uq.study.file import Tied
+from uq.text.numbers import (
+    capitalized,
+    compared,
+    counted,
+    digits,
+    estimated,
+    percent,
+    percent_interval,
+)
+from uq.text.units import beside, powers, readable, unit_of
+
+ASSUMED = "assumed"
+CHOSEN = "chosen"
+"""Of a quantity whose range is one of designs: nothing to measure, and no tolerance."""
+
+_WORDS = f"(given|inferred|fitted|{ASSUMED}|{CHOSEN})"
+_MARK = re.compile(rf"(?:^|[:;,] ){_WORDS}\b|(?<!\bnot )\b{_WORDS}$")
+
+
+def mark(source: str) -> str:
+    """Return the quality of a number according to its source, or "".
+
+    Parameters
+    ----------
+    source : str
+        Such as ``"Knudsen & Massih 2002, Table 1: given, its exponent inferred"``.
+
+    Returns
+    -------
+    str
+        ``given``, ``inferred``, ``fitted``, ``assumed`` or ``chosen``: the first that begins the
+        sentence or one of its parts, or ends it.
+    """
+    match = _MARK.search(source)
+    return (match[1] or match[2]) if match else ""
+
+
+def mark_of(result: Result, name: str) -> str:
+    """Return the quality of a parameter of a result; "" also without a source."""
+    return mark(str(result.dataset[name].attrs.get("source", "")))
+
 
 _TWIN = re.compile(r"(.+)_(\d+)")
 
@@ -158,3 +199,103 @@ def share_text(share: Estimate) -> str:
     """Return a share in per cent, with its interval."""
     interval = f" ({percent_interval(share.low, share.high)})" if share.has_interval else ""
     return percent(share.value) + interval
+
+
+class NumberTarget:
+    """An element of an output, or a quantity derived from it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    name : str
+        As `uq.sensitivity` returns it.
+
+    Attributes
+    ----------
+    name : str
+        Its readable name, also accepted by ``--output``: ``P(life < 24 hours)``.
+    units : str
+        CF unit of the numbers; ``"1"`` for those of a logarithm, a rank or an event.
+    meaning : str
+        Of the element, with its place.
+    """
+
+    def __init__(self, result: Result, name: str):
+        form, inside, _ = split_name(name)
+        output = inside.partition("=" if "[" not in inside else "[")[0]
+        self.name, self.units, self.meaning = name, "1", ""
+        self._compared, self._asked = "", result.analysis.thresholds.get(output, ())
+        if result.is_category(output):
+            self.meaning = str(result.dataset[output].attrs["long_name"])
+        elif output in (outputs := result.outputs):
+            element, *others = result.named_elements(inside)
+            declared = outputs[output]
+            self._units = declared.unit
+            self._compared = compared(inside, declared.is_angle)
+            self.meaning = element_called(result, element)
+            if others:
+                self.meaning = f"{readable(element.meaning)}, all {1 + len(others)} elements"
+            self.units = "1" if form else declared.unit
+            self.name = self.label(name)
+
+    def label(self, label: str) -> str:
+        """Return the name of one of its estimates for a person."""
+        return estimated(label, self._units, self._compared, self._asked)
+
+
+def assumptions(result: Result) -> dict[str, Fact]:
+    """Return the assumed laws and fixed values, and the laws without a source.
+
+    Parameters
+    ----------
+    result : Result
+        A result.
+
+    Returns
+    -------
+    dict of str to Fact
+        ``assumed_laws``, ``assumed_values`` and ``laws_without_source``, as far as there are any:
+        the ``inputs``, and the number that they are ``of``.
+    """
+    study = result.study.uncertain
+    tied = [name for name, law in study.items() if isinstance(law, Tied)]
+    laws = {name: how for name, how in _marks(result, "input").items() if name not in tied}
+    fixed = _marks(result, "fixed")
+    assumed = [name for name, how in laws.items() if how == ASSUMED]
+    unstated = [
+        name
+        for name, how in laws.items()
+        if not how and "initial" not in result.dataset[name].attrs
+    ]
+    values = [name for name, how in fixed.items() if how == ASSUMED]
+    groups = {
+        "assumed_laws": (f"{_counted_with_verb(assumed, laws, 'law')} assumed", assumed, laws),
+        "assumed_values": (
+            f"{_counted_with_verb(values, fixed, 'fixed value')} assumed",
+            values,
+            fixed,
+        ),
+        "laws_without_source": ("No source says how well these laws are known", unstated, laws),
+    }
+    return {
+        key: Fact(
+            {"inputs": names, "of": len(total)},
+            words=f"{clause}: {joined([called(name) for name in names])}.",
+        )
+        for key, (clause, names, total) in groups.items()
+        if names
+    }
+
+
+def _counted_with_verb(names: Sized, total: Sized, noun: str) -> str:
+    verb = "is" if len(names) == 1 else "are"
+    return f"{len(names)} of {counted(len(total), noun)} {verb}"
+
+
+def _marks(result: Result, role: str) -> dict[str, str]:
+    """Return the quality of the source of each parameter with a role."""
+    return {
+        str(name): mark_of(result, str(name))
+        for name, variable in result.dataset.variables.items()
+        if variable.attrs.get("role") == role
+    }

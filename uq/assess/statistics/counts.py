@@ -1,4 +1,4 @@
-"""Numbers of rows without a value, or less accurate than requested."""
+"""Rows without a value or less accurate than requested, and the effect of stated errors."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -7,6 +7,7 @@ import numpy as np
 
 from uq.assess.population import as_sample
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind
+from uq.contract import Mask
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.result.variables import error_name
@@ -84,3 +85,48 @@ def stated_error(result: Result, element: Element) -> Element | None:
     if name not in result.output_names:
         return None
     return next((error for error in result.elements([name]) if error.place == element.place), None)
+
+
+def off_by_error(element: Element, error: Element, sign: int) -> Element:
+    """Return the same rows, each with a value that differs by the error stated for it.
+
+    What never ends, is censored or states no error stays as it is; no life becomes negative.
+
+    Parameters
+    ----------
+    element, error : Element
+    sign : {-1, 1}
+        Whether the values become smaller or larger.
+    """
+    values = np.where(
+        _stated(element, error), element.values + sign * np.abs(error.values), element.values
+    )
+    return replace(element, values=np.maximum(values, 0.0) if element.is_lifetime else values)
+
+
+def error_share(element: Element, error: Element) -> float:
+    """Return the mean square of the errors as a share of the variance; of lives, of logarithms.
+
+    Of the rows that state an error; NaN where these have no variance.
+    """
+    kept = _stated(element, error)
+    values, errors = element.values[kept], error.values[kept]
+    if element.is_lifetime:
+        positive = values > 0
+        values, errors = values[positive], errors[positive]
+        values, errors = np.log(values), errors / values
+    variance = float(np.var(values)) if len(values) else 0.0
+    return float(np.mean(np.square(errors))) / variance if variance > 0 else np.nan
+
+
+def stating_none(element: Element, error: Element) -> int:
+    """Return how many rows have a value that could have an error, and state none."""
+    return int((_may_err(element) & ~np.isfinite(error.values)).sum())
+
+
+def _stated(element: Element, error: Element) -> Mask:
+    return _may_err(element) & np.isfinite(error.values)
+
+
+def _may_err(element: Element) -> Mask:
+    return np.isfinite(element.values) & ~element.censored

@@ -1,12 +1,16 @@
-"""The quantiles that a study asks for, and the B-lives of lifetimes."""
+"""Quantiles, B-lives, probabilities at thresholds, and what exact integration adds to them."""
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import isfinite, nan
 
 from uq.assess.failed_rows import bounded
-from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
+from uq.assess.scaling import why_not_integrated
+from uq.assess.statistic import COUNT, FACT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.element import Element
+from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
+from uq.stats.estimate_json import number
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
 """Share of rows that have ended by each of the lives that engineers quote."""
@@ -69,3 +73,106 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
     for label, rows in (("never ending", element.never), ("censored", element.censored)):
         key, words = f"rows {label}", f"rows {label.replace('ending', verb)}"
         yield Statistic(("b_lives", key), words, Estimate(float(rows.sum())), "rows", rows_in)
+
+
+SIDES = {"above": ">", "below": "<"}
+
+
+_LISTING = Listing("Probabilities, with 95 % intervals", by="threshold")
+PROBABILITY = StatisticKind(form="side", listing=_LISTING)
+UNDEFINED = StatisticKind(
+    form="",
+    is_share=True,
+    without="",
+    is_count=True,
+    listing=_LISTING,
+    readers=Reader.REPORT,
+)
+"""The share of undefined rows beside both probabilities; JSON has it among theirs."""
+
+
+@bounded(of_magnitude=True)
+def thresholds(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield P(above), P(below) and the share that is undefined for each threshold of an output."""
+    sample, kept = context.sample(element), ~element.failed
+    share_undefined = float(element.undefined[kept].mean()) if kept.any() else nan
+    undefined = {"undefined": estimate_json.number(share_undefined)}
+    for threshold in context.analysis.thresholds.get(element.output, ()):
+        key = ("thresholds", repr(threshold))
+        estimates = (sample.probability_above(threshold), sample.probability_below(threshold))
+        guesses = sample.ended_by(threshold)
+        for (side, sign), estimate in zip(SIDES.items(), estimates, strict=True):
+            statistic = Statistic(
+                (*key, side),
+                f"P({sign}{threshold!r})",
+                estimate,
+                kind=PROBABILITY,
+                heading=f"P({side})",
+                falls=side == "below",
+                at=threshold,
+                facts=undefined,
+                estimator=sample.share_estimator(threshold, side),
+                by=sample.by[f"probability_{side}"],
+            )
+            if guesses is not None:
+                guess = guesses[statistic.falls]
+                guessed = replace(statistic, estimate=guess, by=sample.by["ended_by"])
+                statistic = _with_guess(statistic, guessed)
+            yield statistic
+        yield Statistic(
+            (*key, "undefined"),
+            "",
+            Estimate(share_undefined),
+            kind=UNDEFINED,
+            heading="undefined",
+            at=threshold,
+            facts=undefined,
+        )
+
+
+def _with_guess(plain: Statistic, guess: Statistic) -> Statistic:
+    """Return a probability that censored rows leave open, with its Kaplan-Meier estimate."""
+    label = f"{plain.label}, if" if plain.falls else ""  # a terminal shows one side only
+    assumed = f"by Kaplan-Meier, assuming {guess.estimate.assumes}"
+    small = (plain.estimate.reason, assumed, guess.estimate.reason)
+    return replace(
+        plain,
+        otherwise=replace(guess, label=label),
+        more="; ".join(filter(None, small)) if plain.falls else "",
+    )
+
+
+_AT = "B10"
+_KIND = replace(
+    FACT,
+    text="{:.2g} times",
+    listing=LIFE.listing,
+    readers=FACT.readers | Reader.REPORT,
+)
+
+
+def integrated(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield how many times the rows the exact integration is worth: a ratio of variances."""
+    if not element.declared.scales:
+        return
+    why = why_not_integrated(context.rows, element)
+    law = element.law
+    if law is None:
+        if why:
+            yield Statistic(("integrated",), "", Estimate(), kind=_KIND, column="", notes=(why,))
+        return
+    names = " and ".join(name.replace("_", " ") for name in law.inputs)
+    words = f"{names} integrated exactly"
+    worth = context.sample(element).integration_gain(B_LIVES[_AT])
+    if isfinite(worth):
+        words += f", worth {worth:.2g} times the rows at {_AT}"
+    yield Statistic(
+        ("integrated",),
+        "worth of the rows",
+        Estimate(worth),
+        kind=_KIND,
+        heading=f"worth of the rows at {_AT}",
+        more=f"{names} integrated exactly",
+        notes=tuple(filter(None, (words, why))),
+        facts={"integrated": {"inputs": list(law.inputs), "worth": number(worth)}},
+    )

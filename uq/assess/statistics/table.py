@@ -3,12 +3,9 @@
 from typing import Any
 
 from uq.assess.statistic import Maker
-from uq.assess.statistics.between_regimes import between_regimes
 from uq.assess.statistics.counts import accuracy, counts, effective
-from uq.assess.statistics.integrated import integrated
-from uq.assess.statistics.moments import moments_of
-from uq.assess.statistics.quantiles import b_lives, quantiles
-from uq.assess.statistics.thresholds import thresholds
+from uq.assess.statistics.moments import between_regimes, moments_of
+from uq.assess.statistics.quantiles import b_lives, integrated, quantiles, thresholds
 from uq.assess.statistics.tolerance import joint, tolerance
 
 STATISTICS: dict[str, Maker] = {

@@ -1,4 +1,4 @@
-"""The verbs that take a result: its run, and what it says."""
+"""The verbs that take a result, or learn from inspections."""
 
 import sys
 import webbrowser
@@ -92,7 +92,7 @@ def row(
     json: given.Json = False,
 ) -> int:
     """Show one row, and compute it again."""
-    from uq.cli import row as single
+    from uq.cli import status as single
 
     return single.row(result, number, lowest, near_quantile, plot, model, json)
 
@@ -109,9 +109,9 @@ def summary(
     """Show the answer, and statistics of each output."""
     from uq.assess.answer.answer import conclude
     from uq.assess.findings import Findings
-    from uq.assess.regime_boundary import boundary_facts
+    from uq.assess.regimes import boundary_facts
     from uq.assess.summary import summarise
-    from uq.assess.summary_json import summary_facts
+    from uq.assess.summary_facts import summary_facts
     from uq.cli import summary_tables
     from uq.cli.printing import print_json
     from uq.result.result import Result
@@ -146,7 +146,7 @@ def sensitivity(
 ) -> None:
     """Show which inputs cause the scatter."""
     from uq.assess.sensitivities import sensitivities
-    from uq.assess.sensitivity_json import sensitivity_facts
+    from uq.assess.sensitivity_table import sensitivity_facts
     from uq.cli.printing import print_json
     from uq.cli.sensitivity import show
     from uq.result.result import Result
@@ -163,7 +163,7 @@ def levels(
     json: given.Json = False,
 ) -> None:
     """Show how much scatter is shared, own, or due to chance."""
-    from uq.cli.levels import levels as show_levels
+    from uq.cli.sensitivity import levels as show_levels
 
     show_levels(result, output, plain, json)
 
@@ -184,7 +184,7 @@ def fleet(
     json: given.Json = False,
 ) -> None:
     """Show when the first of many units ends."""
-    from uq.cli import fleet as fleets
+    from uq.cli import estimates as fleets
 
     fleets.fleet(result, size, by or [], allow, output, plain, json)
 
@@ -220,7 +220,7 @@ def what_if(
     json: given.Json = False,
 ) -> None:
     """Reweight the rows to other laws of the inputs."""
-    from uq.cli import what_if as question
+    from uq.cli import summary_tables as question
 
     question.what_if(result, set_, json)
 
@@ -288,7 +288,7 @@ def report(
 
 def _warn_if_altered(path: Path) -> None:
     """Print a line if the checksum of a result is wrong; larger ones are left to `uq verify`."""
-    from uq.files.seal import is_intact
+    from uq.files.netcdf_files import is_intact
     from uq.result.result_file import UNREADABLE
 
     if path.stat().st_size > _LARGEST:
@@ -299,3 +299,64 @@ def _warn_if_altered(path: Path) -> None:
         altered = not (isinstance(error, OSError) and (error.errno or 0) > 0)
     if altered:
         streams.complain(f"{path}: has changed since it was written: its checksum is wrong")
+
+
+def update(
+    source: Annotated[
+        Path, typer.Argument(metavar="STUDY|OUT.nc", help="A study (TOML), or a result.")
+    ],
+    inspections: Annotated[
+        Path, typer.Argument(metavar="INSPECTIONS.csv", help="What was measured.")
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="POSTERIOR.nc", help="Where to write it.")
+    ],
+    rows: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Rows of a study; new rows of a result.")
+    ] = None,
+    model_error: Annotated[
+        float | None,
+        typer.Option(min=0.0, metavar="CV", help="Scatter of reality about the model."),
+    ] = None,
+    by: given.Times = None,
+    workers: given.Workers = None,
+    scheduler: given.Scheduler = None,
+    model: given.ModelReference = None,
+    quiet: given.Quiet = False,
+    json: given.Json = False,
+) -> int:
+    """Learn from inspections about inputs, units and lives."""
+    from uq.cli import learning
+
+    options = RunOptions(workers, scheduler)
+    return learning.update(
+        source,
+        inspections,
+        output,
+        rows,
+        model_error,
+        by or [],
+        model,
+        options,
+        quiet or json,
+        json,
+    )
+
+
+def next_inspection(
+    result: given.ResultFile,
+    inspect: Annotated[
+        str, typer.Option(metavar="OUTPUT", help="What to inspect, such as 'depth'.")
+    ],
+    at: given.Times = None,
+    units: Annotated[
+        list[int] | None, typer.Option(min=1, metavar="N", help="How many more units.")
+    ] = None,
+    cv: Annotated[float, typer.Option(min=0.0, help="Error of the measurement.")] = 0.1,
+    life: Annotated[str | None, typer.Option(metavar="NAME", help="The life to narrow.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Estimate the worth of inspecting more units."""
+    from uq.cli import learning as question
+
+    question.next_inspection(result, inspect, at or [], units or [1, 5, 20], cv, life, json)

@@ -70,7 +70,7 @@ def init(
     if (model is None) == (machine is None):
         raise InputError("uq: give one of MODEL and --machine NAME")
     if machine is not None:
-        from uq.cli.new_machine import write_machine
+        from uq.cli.models import write_machine
 
         write_machine(machine)
         return
@@ -113,7 +113,7 @@ def schema(
 ) -> None:
     """Print the JSON Schema of study files, for an editor."""
     from uq.cli.printing import print_json
-    from uq.machines.machine import machine_schema
+    from uq.machines.program import machine_schema
     from uq.study.schema import json_schema
 
     print_json(machine_schema() if machine else json_schema())
@@ -127,7 +127,7 @@ def plan(
     json: given.Json = False,
 ) -> None:
     """Estimate what a study will take, from a few of its rows."""
-    from uq.cli.plan import plan as show_plan
+    from uq.cli.check import plan as show_plan
     from uq.cli.progress import say_plain
     from uq.cli.run import loaded
     from uq.study.hints import hints

@@ -12,9 +12,9 @@ from uq.assess.convergence import running_estimates
 from uq.errors import InputError
 from uq.indices.index import ST
 from uq.render.figures.elements_plot import curve_style, display_unit, drawn_elements
+from uq.render.figures.figure import INK, LINES, SHADES, styled
 from uq.render.figures.index_plot import range_of_indices, subject
 from uq.render.figures.panel import arrows, column, finish, title, whole_numbers
-from uq.render.figures.style import INK, LINES, SHADES, styled
 from uq.render.figures.words import as_label, label, labelled
 from uq.result.elements import Floats
 from uq.result.result import AnyResult, Result

@@ -20,13 +20,12 @@ from uq.render.figures.elements_plot import (
     occurring_regimes,
     shares_in_bins,
 )
-from uq.render.figures.figure import Drawing
+from uq.render.figures.figure import INK, MARK, ROWS, WIDTH, Drawing, styled, thinned
 from uq.render.figures.panel import arrows, column, figure_of, finish, is_wide, logarithmic, roomy
-from uq.render.figures.style import INK, MARK, ROWS, WIDTH, styled, thinned
 from uq.render.figures.words import as_label, label, literal, rows_in_words, typeset
 from uq.result.elements import Element
 from uq.result.result import AnyResult, Result
-from uq.stats.estimate_text import rounded_text
+from uq.stats.estimate import rounded_text
 from uq.text.numbers import minus
 from uq.text.units import ReadableUnit
 

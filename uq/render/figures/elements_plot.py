@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from uq.render.figures.figure import COLOURS, LIMIT, LINES, SHADES, thinned
 from uq.render.figures.panel import is_wide
-from uq.render.figures.style import COLOURS, LIMIT, LINES, SHADES, thinned
 from uq.render.figures.words import labelled, literal, rows_in_words
 from uq.result.elements import Element, Floats, Mask, flags
 from uq.result.result import Result

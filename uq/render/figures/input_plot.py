@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from uq.assess.sampled_inputs import EVERYWHERE, laws_and_values, weights_of_samples
 from uq.errors import InputError, choices
 from uq.render.figures.elements_plot import bins, input_axis
+from uq.render.figures.figure import INK, ROWS, styled
 from uq.render.figures.panel import figure_of, grid, logarithmic, roomy
-from uq.render.figures.style import INK, ROWS, styled
 from uq.render.figures.words import as_label
 from uq.result.elements import Floats
 from uq.result.result import AnyResult, Result

@@ -9,29 +9,30 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.errors import InputError
-from uq.render.figures.figure import Drawing
-from uq.render.figures.panel import above, column, figure_of, finish, roomy, whole_numbers
-from uq.render.figures.quantities import (
-    axis_unit,
-    families,
-    find,
-    in_unit,
-    label_axes,
-    pair,
-    with_quantities,
-)
-from uq.render.figures.style import (
+from uq.render.figures.figure import (
     COLOURS,
     INK,
     LIMIT,
     LINES,
     MARK,
     PAGE,
+    Drawing,
     are_many,
     point_size,
     styled,
 )
-from uq.render.figures.words import labelled, powers
+from uq.render.figures.panel import above, column, figure_of, finish, roomy, whole_numbers
+from uq.render.figures.words import (
+    axis_unit,
+    families,
+    find,
+    in_unit,
+    label_axes,
+    labelled,
+    pair,
+    powers,
+    with_quantities,
+)
 from uq.result.elements import Floats
 
 _LAST = 4  # periods of the drive

@@ -15,8 +15,7 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from uq.errors import InputError
-from uq.render.figures.figure import Drawing
-from uq.render.figures.style import WIDTH
+from uq.render.figures.figure import WIDTH, Drawing
 from uq.result.elements import Floats
 from uq.text.numbers import minus
 

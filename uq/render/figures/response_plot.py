@@ -12,10 +12,19 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from uq.errors import InputError
+from uq.render.figures.figure import COLOURS, LINES, are_many, point_size, styled
 from uq.render.figures.panel import column, finish
-from uq.render.figures.quantities import axis_unit, families, find, in_unit, label_axes, pair
-from uq.render.figures.style import COLOURS, LINES, are_many, point_size, styled
-from uq.render.figures.words import as_label, literal, powers
+from uq.render.figures.words import (
+    as_label,
+    axis_unit,
+    families,
+    find,
+    in_unit,
+    label_axes,
+    literal,
+    pair,
+    powers,
+)
 from uq.result.result import AnyResult, Result
 from uq.text import numbers
 from uq.text.numbers import minus, percent

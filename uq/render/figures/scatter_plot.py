@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from uq.assess.independent_inputs import independent_inputs
+from uq.assess.row_inputs import independent_inputs
 from uq.errors import InputError
 from uq.indices.index import RefusedError
 from uq.indices.measures import ks_distances
@@ -19,8 +19,8 @@ from uq.render.figures.elements_plot import (
     mark_thresholds,
     occurring_regimes,
 )
+from uq.render.figures.figure import INK, PAGE, ROWS, SHADES, WIDTH, point_size, styled, thinned
 from uq.render.figures.panel import finish, grid, is_wide, logarithmic, roomy, title, whole_numbers
-from uq.render.figures.style import INK, PAGE, ROWS, SHADES, WIDTH, point_size, styled, thinned
 from uq.render.figures.words import as_label, label, labelled, rows_in_words
 from uq.result.elements import (
     Element,

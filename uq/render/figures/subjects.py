@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
-from uq.assess.independent_inputs import independent_inputs
+from uq.assess.row_inputs import independent_inputs
 from uq.assess.sampled_inputs import laws_and_values
 from uq.assess.sensitivities import TargetIndices, methods
 from uq.assess.targets import split_name
@@ -12,7 +12,7 @@ from uq.errors import InputError
 from uq.render.figures.catalogue import FigureSubject
 from uq.render.figures.convergence_plot import followed, total_indices
 from uq.render.figures.elements_plot import occurring_regimes
-from uq.render.figures.index_curve_plot import dimension_of
+from uq.render.figures.index_plot import dimension_of
 from uq.text.element_names import is_whole
 
 _MOST_INPUTS = 6

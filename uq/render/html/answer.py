@@ -5,14 +5,13 @@ from collections.abc import Iterator, Sequence
 from markupsafe import Markup
 
 from uq.assess.answer.contributions import Contribution, whole_percent
-from uq.assess.answer.facts import Answer
 from uq.assess.answer.parts import Quantity
 from uq.assess.answer.remedies import Advice
+from uq.assess.answer.study_answer import Answer
 from uq.assess.answer.wording import called, sentence, share_text
 from uq.errors import choices
-from uq.render.html import bars
-from uq.render.html.folded import below, folded, items
-from uq.render.html.keyed_sentences import joined, keyed, shown, with_keys
+from uq.render.html import cells
+from uq.render.html.keyed_sentences import below, folded, items, joined, keyed, shown, with_keys
 from uq.text.literals import plain
 from uq.text.numbers import capitalized
 
@@ -56,7 +55,7 @@ _STYLE = """
   .answer :is(p, li, .answer-bar) { break-inside: avoid; }
 }
 """
-STYLE = Markup(_STYLE) + bars.STYLE
+STYLE = Markup(_STYLE) + cells.STYLE
 
 _BAR = Markup(
     '<div class="answer-bar"><span>{}</span>{}<span class="answer-size">{}</span>'
@@ -258,7 +257,7 @@ def _levels(answer: Answer) -> Markup:
         return Markup()
     blocks = []
     for level in answer.levels.levels:
-        track = bars.bar(level.share.value, level.share.low, level.share.high, (0.0, 1.0))
+        track = cells.bar(level.share.value, level.share.low, level.share.high, (0.0, 1.0))
         texts = capitalized(level.words), track, whole_percent(level.share), level.inputs_named
         blocks.append(_BAR.format(*map(shown, texts)))
     return Markup("").join([*blocks, _small(f"Share of the variance of {answer.levels.subject}.")])
@@ -277,7 +276,7 @@ def _bar(answer: Answer, lead: Quantity, number: int, level: Contribution) -> Ma
     largest = lead.ranking.contributions[0].value
     most = largest if level.unit.name else max(1.0, largest)
     first = level.indices[0]
-    track = bars.bar(level.value, first.low, first.high, (0.0, most))
+    track = cells.bar(level.value, first.low, first.high, (0.0, most))
     place = (*_place(lead), "ranking", "contributions", str(number))
     words, effect = level.words, keyed(answer.fact, *place, "effects")
     if len(level.inputs) > _MOST_NAMED:

@@ -1,25 +1,139 @@
-"""The columns of numbers inside a page: how they are called, written and drawn."""
+"""Columns of numbers inside a page: their names, axes and bytes."""
 
+import base64
+import re
 from collections.abc import Sequence
+from math import floor, isfinite, log10
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
+from matplotlib.ticker import LogLocator, MaxNLocator
 from numpy.typing import NDArray
 
 from uq.assess.answer.wording import called
 from uq.contract import Floats
 from uq.render.figures.elements_plot import display_unit
+from uq.render.figures.panel import is_wide
 from uq.render.figures.words import element_in_words, meaning_of, symbol_beside, unbroken
-from uq.render.html.axes import axis_of, common_digits
-from uq.render.html.encoded import encoded
-from uq.render.html.symbols import parts_of
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain
 from uq.text.numbers import printed
-from uq.text.symbols import readable
-from uq.text.units import ReadableUnit
+from uq.text.units import ReadableUnit, readable
+
+_MOST_TICKS = 7
+_MOST_DIGITS = 13
+_SHORT = 8.0  # a logarithmic axis that spans a smaller factor has evenly spaced ticks
+
+
+def axis_of(values: Floats, per: float) -> dict[str, Any]:
+    """Return the ends of an axis, whether it is logarithmic, and its ticks.
+
+    Parameters
+    ----------
+    values : ndarray
+        Some may be infinite.
+    per : float
+        The size of the unit shown, in which ticks are round.
+    """
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
+    if low == high:
+        low, high = low - abs(low or 1.0) / 2, high + abs(high or 1.0) / 2
+    wide = bool(is_wide(finite)) and low > 0
+    return {"low": low, "high": high, "wide": wide, "ticks": _ticks(low, high, per, wide)}
+
+
+def common_digits(axis: dict[str, Any]) -> int:
+    """Return how many digits the values of an axis have in common."""
+    low, high = axis["low"], axis["high"]
+    alike = floor(log10(max(-low, high)) - log10(high - low)) if isfinite(high - low) else 0
+    return min(max(alike, 0), _MOST_DIGITS)
+
+
+def _ticks(low: float, high: float, per: float, wide: bool) -> list[float]:
+    """Return round numbers between two ends, in the unit shown; the ends where there are none."""
+    first, last = low / per, high / per
+    if not (isfinite(last - first) and last - first > np.finfo(float).tiny):
+        return [low, high]
+    if wide and last / first > _SHORT:
+        decades = log10(last) - log10(first)
+        steps = (1.0, 2.0, 5.0) if decades <= 2 else (1.0, 3.0) if decades <= 4 else (1.0,)
+        places = LogLocator(subs=steps, numticks=_MOST_TICKS).tick_values(first, last)
+    else:
+        places = MaxNLocator(_MOST_TICKS, steps=[1, 2, 5, 10]).tick_values(first, last)
+    inside = [float(place * per) for place in places if first <= place <= last]
+    return inside if len(inside) > 1 else [low, high]
+
+
+IMPOSSIBLE = 255
+"""The byte of a row without weight."""
+
+_STEPS = 254
+_ALIKE = 1e-9  # differences of logarithms that are rounding
+_DEEPEST = 16.0
+"""Largest fall of a logarithm that is kept: less than a ten millionth of the largest weight is
+negligible."""
+
+
+def encoded(values: Any, kind: str) -> str:
+    """Return an array as base64 of its bytes.
+
+    Parameters
+    ----------
+    values : array-like
+    kind : str
+        NumPy's name of their type, such as ``"<f8"``.
+
+    Returns
+    -------
+    str
+    """
+    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode()
+
+
+def log_bytes(weights: Floats) -> dict[str, Any]:
+    """Return the logarithms of weights as one byte each.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (n,)
+        Not all 0.
+
+    Returns
+    -------
+    dict
+        The logarithm is ``top - step * byte``, or -inf where the byte is `IMPOSSIBLE`.
+    """
+    possible = weights > 0
+    logs = np.log(weights, where=possible, out=np.full(len(weights), -np.inf))
+    top = float(logs.max())
+    depth = np.minimum(top - logs, _DEEPEST)
+    step = max(float(depth[possible].max()) / _STEPS, _ALIKE)
+    codes = np.where(possible, np.round(depth / step), IMPOSSIBLE)
+    return {"top": top, "step": step, "bytes": encoded(codes, "u1")}
+
+
+def parts_of(symbol: str) -> list[str]:
+    """Return a symbol cut before and after its indices: ``k_c(0)`` is ``k``, ``c``, ``(0)``.
+
+    One with several indices in a row is a name, and not cut.
+    """
+    if re.search(r"_[A-Za-z0-9]*_", symbol):
+        return [plain(symbol)]
+    return re.split(r"_([A-Za-z0-9]+)", plain(symbol))
+
+
+def indexed(symbol: str) -> Markup:
+    """Return a symbol with its index below the line: ``k_c`` as ``k<sub>c</sub>``."""
+    parts = (
+        Markup("<sub>{}</sub>" if i % 2 else "{}").format(part)
+        for i, part in enumerate(parts_of(symbol))
+    )
+    return Markup("").join(parts)
+
 
 _ENDED, _CENSORED, _NEVER, _UNDEFINED, _FAILED = range(5)
 """How a row ended, as the scripts number it."""

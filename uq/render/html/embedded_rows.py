@@ -1,4 +1,4 @@
-"""The rows inside a page, with which its scripts (``live/``) compute."""
+"""Rows inside a page, with which its scripts (``live/``) compute."""
 
 import shlex
 from collections.abc import Iterator, Sequence
@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from uq.assess.answer.parts import Quantity
 from uq.assess.answer.wording import called
 from uq.assess.findings import Findings
-from uq.assess.independent_inputs import independent_inputs
+from uq.assess.row_inputs import independent_inputs
 from uq.assess.scaling import population
 from uq.assess.summary import REGIME
+from uq.contract import Floats
 from uq.render.figures.elements_plot import occurring_regimes
-from uq.render.figures.style import LIMIT, ROWS
+from uq.render.figures.figure import LIMIT, ROWS
+from uq.render.figures.scatter_plot import leading
 from uq.render.figures.words import element_in_words, literal
-from uq.render.html.embedded_columns import input_column, output_column
-from uq.render.html.encoded import encoded
-from uq.render.html.first_scatter import first_element, first_input
+from uq.render.html.embedded_columns import encoded, input_column, output_column
 from uq.render.html.moved_laws import STOPS
 from uq.render.html.tolerances import event_key, tolerances
 from uq.result.element import Element
@@ -29,7 +29,50 @@ from uq.stats.clusters import Clusters
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain
 from uq.text.numbers import grouped, printed, threshold
-from uq.text.symbols import readable
+from uq.text.units import readable
+
+
+def first_element(
+    elements: Sequence[Element], answered: Sequence[Quantity], analysis: AnalysisTable
+) -> int:
+    """Return the place of the element shown first.
+
+    Parameters
+    ----------
+    elements : sequence of Element
+    answered : sequence of Quantity
+        The one that the study is about first.
+    analysis : AnalysisTable
+
+    Returns
+    -------
+    int
+        Without an answer, of one that the study asks about, a life first.
+    """
+    about = answered[0].name if answered else ""
+    return max(
+        range(len(elements)),
+        key=lambda i: (
+            elements[i].name == about,
+            elements[i].output in analysis.thresholds,
+            elements[i].is_lifetime,
+            -i,
+        ),
+    )
+
+
+def first_input(inputs: dict[str, Floats], element: Element, answered: Sequence[Quantity]) -> str:
+    """Return the input that the answer names as contributing most to an element.
+
+    Where it names none, that over which the mean rank of the element varies most.
+    """
+    quantities = [quantity for quantity in answered if quantity.name == element.name]
+    events = [event for quantity in quantities for event in quantity.events]
+    rankings = [quantity.ranking for quantity in quantities] + [event.ranking for event in events]
+    leaders = [ranking.leader for ranking in rankings if ranking is not None]
+    named = [name for leader in leaders if leader for name in leader.inputs if name in inputs]
+    return (named or leading(inputs, element))[0]
+
 
 MOST_ROWS = 20_000
 """A page holds no more rows: a brush over them takes 0.1 s."""

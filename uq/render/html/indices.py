@@ -6,10 +6,9 @@ from functools import partial
 from itertools import chain
 from typing import NamedTuple
 
-from uq.assess.answer.number_targets import NumberTarget
+from uq.assess.answer.wording import NumberTarget
 from uq.assess.findings import Findings
-from uq.assess.ranked_indices import Values, lines
-from uq.assess.sensitivities import TargetIndices, methods
+from uq.assess.sensitivities import TargetIndices, Values, lines, methods
 from uq.assess.targets import split_name
 from uq.errors import InputError
 from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
@@ -19,7 +18,7 @@ from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
 from uq.text.numbers import capitalized, counted
-from uq.text.symbols import readable
+from uq.text.units import readable
 
 
 class IndexTable(NamedTuple):

@@ -5,20 +5,18 @@ from math import floor, log10
 
 import numpy as np
 
-from uq.assess.answer.sources import mark
-from uq.assess.answer.wording import DisplayUnit, unit_of_input
+from uq.assess.answer.wording import DisplayUnit, mark, unit_of_input
 from uq.assess.sampled_inputs import PROBABILITIES, compare, laws_and_values, weights_of_samples
 from uq.contract import Floats
 from uq.render.figures.words import meaning_of, symbol_of, unbroken
 from uq.render.html.cells import Cell, HtmlTable, without_empty_columns
-from uq.render.html.symbols import indexed
+from uq.render.html.embedded_columns import indexed
 from uq.result.result import Result
 from uq.sampling.law import Law
 from uq.study.file import Tied
 from uq.text.keys import key_of
 from uq.text.numbers import law_in_unit
-from uq.text.symbols import readable, symbol
-from uq.text.units import PURE, beside, unit_of
+from uq.text.units import PURE, beside, readable, symbol, unit_of
 
 
 def input_tables(result: Result) -> Iterator[HtmlTable]:

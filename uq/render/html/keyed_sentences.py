@@ -1,11 +1,15 @@
-"""Sentences of facts as HTML, each with the keys of its numbers for ``uq trace``."""
+"""Sentences of facts as HTML with the keys of their numbers, and parts to be unfolded."""
+
+from collections.abc import Collection, Iterable
 
 from markupsafe import Markup
 
+from uq.assess.answer.remedies import Advice, TighterTolerance
+from uq.assess.answer.wording import called_together
 from uq.assess.fact import Fact
 from uq.text.keys import key_of
 from uq.text.literals import plain
-from uq.text.numbers import printed
+from uq.text.numbers import capitalized, printed
 
 
 def keyed(answer: Fact, *path: str, text: str | None = None) -> Markup:
@@ -53,3 +57,69 @@ def shown(text: str) -> Markup:
 def joined(*sentences: str) -> Markup:
     """Return sentences in a row, without empty ones."""
     return Markup(" ").join(filter(None, sentences))
+
+
+def folded(title: str, content: Markup) -> Markup:
+    """Return content below a title that unfolds it; "" without content."""
+    whole = Markup("<details><summary>{}</summary>{}</details>").format(title, content)
+    return whole if content else Markup()
+
+
+def items(lines: Iterable[str]) -> Markup:
+    """Return lines as a list; "" without any."""
+    entries = Markup("").join(Markup("<li>{}</li>").format(shown(line)) for line in lines if line)
+    return Markup("<ul>{}</ul>").format(entries) if entries else entries
+
+
+def below(advice: Advice) -> Markup:
+    """Return what belongs to a piece of advice: what other tolerances would change."""
+    if len(advice.tolerances) < 2:
+        return Markup()
+    return folded("Half the scatter of each input", _tolerances(advice))
+
+
+def _tolerances(advice: Advice) -> Markup:
+    """Return a table: what half the scatter of each input would make of each number."""
+    tolerances, above = advice.tolerances, {advice.key, *(alike.key for alike in advice.alike)}
+    numbers = {tolerance.statistic: tolerance for tolerance in tolerances}
+    lines = [
+        [
+            "As studied",
+            *(_number(tolerance.text(tolerance.before)) for tolerance in numbers.values()),
+        ]
+    ]
+    for inputs in dict.fromkeys(tolerance.inputs for tolerance in tolerances):
+        by_statistic = {
+            tolerance.statistic: tolerance for tolerance in tolerances if tolerance.inputs == inputs
+        }
+        cells = (
+            _cell(by_statistic[what], above) if what in by_statistic else Markup("<td></td>")
+            for what in numbers
+        )
+        law = Markup("<small>{}</small>").format(shown(next(iter(by_statistic.values())).law))
+        lines.append([shown(capitalized(called_together(inputs))) + law, *cells])
+    head = Markup("").join(
+        Markup('<th scope="col" class="number">{}</th>').format(
+            shown(capitalized(what.removeprefix("the ")))
+        )
+        for what in numbers
+    )
+    body = Markup("").join(
+        Markup('<tr><th scope="row">{}</th>{}</tr>').format(shown(first), Markup("").join(cells))
+        for first, *cells in lines
+    )
+    table = Markup("<table><thead><tr><td></td>{}</tr></thead><tbody>{}</tbody></table>")
+    return Markup('<div class="wide">{}</div>').format(table.format(head, body))
+
+
+def _number(text: str) -> Markup:
+    return Markup('<td class="number">{}</td>').format(shown(text))
+
+
+def _cell(tolerance: TighterTolerance, above: Collection[str]) -> Markup:
+    """Return a number with its interval, and with its key where no sentence above has it."""
+    text = tolerance.text(tolerance.after)
+    number = shown(text) if tolerance.key in above else with_keys(text, tolerance.key)
+    return Markup('<td class="number">{}<small>{}</small></td>').format(
+        number, shown(tolerance.interval)
+    )

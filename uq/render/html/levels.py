@@ -1,17 +1,22 @@
-"""Variance by level in a report: shared, own, or due to chance."""
+"""Samples of several rows in a report: variance by level, and fleets of as many units."""
 
+from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
-from uq.assess.answer.number_targets import NumberTarget
-from uq.assess.answer.wording import called
+from uq.assess.answer.wording import NumberTarget, called
 from uq.assess.findings import Findings
+from uq.assess.fleet import Fleet
+from uq.assess.fleet_numbers import Banded
 from uq.assess.variance_by_level import SOURCES
 from uq.indices.index import S1
-from uq.render.html.cells import Cell, HtmlTable
+from uq.render.html.cells import Cell, HtmlTable, estimate_cell
 from uq.render.html.indices import index_cell
 from uq.sampling.levels import LEVELS
-from uq.stats.estimate_text import share_text
+from uq.stats.estimate import interval_text, share_text, value_text
 from uq.text.keys import key_of
+from uq.text.numbers import counted, in_brackets, threshold
+from uq.text.units import typical, unit_of
 
 
 def levels_of(findings: Findings) -> dict[str, Any] | None:
@@ -38,3 +43,50 @@ def levels_of(findings: Findings) -> dict[str, Any] | None:
     notes += [f"{level}: {', '.join(map(called, names))}" for level, names in on.items() if names]
     table = HtmlTable("Shares of the variance", ("output", *SOURCES), rows)
     return {"size": decomposition.size, "table": table, "notes": notes}
+
+
+HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples")
+
+
+def fleet_table(findings: Findings) -> HtmlTable | None:
+    """Return the lives of fleets of a result; None where a sample has a single unit."""
+    fleets = findings.fleets
+    if not fleets:
+        return None
+    rows = [row for fleet in fleets for row in _rows(fleet)]
+    return HtmlTable(
+        f"Fleets of {counted(fleets[0].size, 'unit')}, with 95 % intervals", HEADER, rows
+    )
+
+
+def fleet_notes(findings: Findings) -> list[str]:
+    """Return what is integrated in these numbers, what they lack, and what they assume."""
+    sentences = dict.fromkeys(note for fleet in findings.fleets for note in fleet.sentences)
+    return list(sentences)
+
+
+def _rows(fleet: Fleet) -> Iterator[tuple[Cell, ...]]:
+    options = {"size": str(fleet.size), "output": fleet.output}
+    traced = partial(key_of, verb="fleet", options=options)
+    unit = unit_of(fleet.units, typical(banded.estimate.value for banded in fleet.first.values()))
+    for p, banded in fleet.first.items():
+        words = f"{100 * p:g} % quantile of the first{in_brackets(unit)}"
+        yield _row(fleet.output, words, banded, traced("first", "quantiles", repr(p)), unit.size)
+    for time, (failed, at_most) in fleet.by.items():
+        by = f"{fleet.ended} by {threshold(time, fleet.units)}"
+        of = ("by", repr(time))
+        yield _row(fleet.output, f"number {by}", failed, traced(*of, "failed"))
+        yield _row(fleet.output, f"P(none {by})", at_most, traced(*of, "at_most_allowed"))
+
+
+def _row(
+    name: str, quantity: str, banded: Banded, traced: str, per: float = 1.0
+) -> tuple[Cell, ...]:
+    ends = ((banded.estimate, ""), (banded.low, "/band_low"), (banded.high, "/band_high"))
+    cells = (
+        estimate_cell(
+            value_text(end, per=per), interval_text(end, per) or end.reason, end, f"{traced}{last}"
+        )
+        for end, last in ends
+    )
+    return Cell(name), Cell(quantity), *cells

@@ -1,29 +1,27 @@
-"""The rows in a report: how they ended, and the statistics of the outputs."""
+"""Rows in a report: how they ended, and the tables, figures and sentences of each output."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import isnan
+from typing import Any
 
+from uq.assess.answer.study_answer import Answer
 from uq.assess.findings import Findings
-from uq.assess.regime_boundary import in_words
+from uq.assess.regimes import in_words
 from uq.assess.statistic import Listing, Reader, Statistic
 from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import REGIME, Described, Shares, Summary
 from uq.contract import Output, Status
 from uq.render.figures.words import place_in_words, unbroken
-from uq.render.html.cells import (
-    SHARE,
-    Cell,
-    HtmlTable,
-    cell,
-    estimate_cell,
-    without_empty_columns,
-)
+from uq.render.html.answer import sayings
+from uq.render.html.cells import SHARE, Cell, HtmlTable, cell, estimate_cell, without_empty_columns
+from uq.render.html.indices import Methods, of_output
+from uq.render.html.pictures import Picture, about
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
 from uq.text.numbers import capitalized, percent, percent_interval, threshold
-from uq.text.units import typical, unit_of
+from uq.text.units import readable, typical, unit_of
 
 
 def status_table(result: Result, summary: Summary) -> HtmlTable:
@@ -218,3 +216,52 @@ def words_used(of_outputs: list[Outcome]) -> list[str]:
         if statistic.estimate.value
     }
     return [text for word, text in _WORDS.items() if word in counted]
+
+
+def groups(
+    findings: Findings,
+    answer: Answer,
+    outcomes: Sequence[Outcome],
+    drawn: Sequence[Picture],
+    methods: Methods,
+) -> Iterator[dict[str, Any]]:
+    """Yield what is known of each output that the study asks for, the one it is about first.
+
+    Parameters
+    ----------
+    findings : Findings
+    answer : Answer
+    outcomes : sequence of Outcome
+        The elements of all outputs.
+    drawn : sequence of Picture
+        Those that the head of the report does not show.
+    methods : Methods
+
+    Yields
+    ------
+    dict
+        Name and meaning of an output; ``sentences`` of the answer, without what the head of the
+        report says; ``tables``; ``words`` that explain the counts; ``pictures``; ``indices``.
+    """
+    result = findings.result
+    shown = result.shown_outputs(result.analysis)
+    for name in dict.fromkeys((*(quantity.output for quantity in answer.quantities), *shown)):
+        if name == REGIME:  # it has its own section
+            continue
+        matching = [outcome for outcome in outcomes if outcome.output == name]
+        shares = (
+            category_table(element, of_labels)
+            for element, of_labels in findings.summary.categories.items()
+            if element.partition("[")[0] == name and of_labels
+        )
+        others = [quantity for quantity in answer.quantities[1:] if quantity.output == name]
+        contents = {
+            "sentences": sayings(answer, others),
+            "tables": [*shares, *result_tables(matching)],
+            "words": words_used(matching),
+            "pictures": about(drawn, name),
+            "indices": of_output(methods, name),
+        }
+        if any(contents.values()):
+            meaning = readable(str(result.dataset[name].attrs["long_name"]))
+            yield {"name": name, "meaning": meaning} | contents

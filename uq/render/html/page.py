@@ -1,31 +1,157 @@
-"""The content of the page, which the template beside this file lays out."""
+"""Report of a result as one HTML file: its content, and the templates that lay it out."""
 
+import csv
+import io
+import json
+import re
+import shlex
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
+from typing import Any
+
+from markupsafe import Markup, escape
 
 from uq.assess.answer.answer import conclude
+from uq.assess.answer.study_answer import Answer
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.errors import InputError
 from uq.files.whole_files import check_target, whole
-from uq.render.html.answer import regimes
+from uq.render.html.answer import STYLE, fragment, regimes
 from uq.render.html.convergence import convergence_of
 from uq.render.html.embedded_rows import rows_inside, why_no_rows
-from uq.render.html.fleets import fleet_notes, fleet_table
-from uq.render.html.head import headline
 from uq.render.html.indices import of_output, sensitivity_of
 from uq.render.html.inputs import fixed_inputs, input_tables
-from uq.render.html.inspections import inspections_csv
-from uq.render.html.layout import laid_out
-from uq.render.html.levels import levels_of
-from uq.render.html.outcomes import outcomes, regime_tables, status_table
-from uq.render.html.output_tables import groups
-from uq.render.html.pictures import pictures
-from uq.render.html.references import references
-from uq.result.commands import named
+from uq.render.html.levels import fleet_notes, fleet_table, levels_of
+from uq.render.html.outcomes import groups, outcomes, regime_tables, status_table
+from uq.render.html.pictures import Picture, pictures
 from uq.result.result import Result
-from uq.result.result_file import open_result
+from uq.result.result_file import named, open_result
+from uq.study.installed_models import find_model
 from uq.study.provenance import provenance
+from uq.text.literals import plain
+from uq.text.numbers import capitalized, printed
+
+_SHOWN_TEXT = 50_000
+"""Characters of the study's text that a page shows: a study may contain data files."""
+
+
+def laid_out(template: str, result: Result, **content: Any) -> str:
+    """Return a page on a result as HTML.
+
+    Parameters
+    ----------
+    template : str
+        The name of one that extends ``base.html``.
+    result : Result
+        A result.
+    **content
+        What this template shows besides title, style and study file.
+
+    Returns
+    -------
+    str
+    """
+    text = result.dataset.attrs["study"]
+    return (
+        templates()
+        .get_template(template)
+        .render(
+            attrs=result.dataset.attrs,
+            study=result.study,
+            text=text.expandtabs(4)[:_SHOWN_TEXT],
+            text_is_cut=len(text) > _SHOWN_TEXT,
+            answer_style=STYLE,
+            **content,
+        )
+    )
+
+
+@cache
+def templates() -> Any:
+    """Return jinja's environment of the templates beside this file."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("uq.render.html", ""),
+        autoescape=True,
+        finalize=lambda value: plain(value) if type(value) is str else value,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "breakable": _breakable,
+        "inside": _inside,
+        "printed": _printed,
+        "capitalized": capitalized,
+        "quoted": shlex.quote,
+    }
+    return environment
+
+
+def _breakable(text: str) -> Markup:
+    """Return text as printed, with places where long names may be broken."""
+    return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(printed(text))))))
+
+
+def _printed(text: str) -> str:
+    return text if isinstance(text, Markup) else printed(text)
+
+
+def _inside(content: Any) -> Markup:
+    """Return plain data as JSON that can stand inside a page."""
+    return Markup(json.dumps(content, allow_nan=False).replace("<", "\\u003c"))
+
+
+def references(result: Result) -> tuple[str, ...] | None:
+    """Return the references that the model asks to cite, or None if it is not installed."""
+    try:
+        return find_model(result.dataset.attrs["model"]).references
+    except InputError:
+        return None
+
+
+def inspections_csv(result: Result) -> str:
+    """Return the inspections inside a result as `uq update` reads them; "" where there are none."""
+    inspections = json.loads(result.dataset.attrs.get("inspections", "[]"))
+    if not inspections:
+        return ""
+    text = io.StringIO()
+    columns = dict.fromkeys(name for inspection in inspections for name in inspection)
+    lines = csv.DictWriter(text, list(columns), lineterminator="\n")
+    lines.writeheader()
+    lines.writerows(inspections)
+    return text.getvalue()
+
+
+_FIGURE = Markup("<figure{}>{}</figure>")  # the verdict says of what
+
+
+def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> Markup:
+    """Return the answer as HTML; takes the figure that it shows out of those drawn.
+
+    Parameters
+    ----------
+    answer : Answer
+    drawn : list of Picture
+        The figures of the results.
+    by_regime : list of Picture
+        The figures of the rows by their regimes, which the answer may be about.
+    """
+    lead = answer.lead
+    figures = [
+        (drawn, figure) for figure in drawn if lead is not None and figure.subject == lead.output
+    ]
+    if answer.regimes_first:
+        figures = [*((by_regime, figure) for figure in by_regime), *figures]
+    if not figures:
+        return fragment(answer)
+    among, shown = figures[0]
+    among.remove(shown)
+    kind = Markup(' class="image"') if shown.is_image else ""
+    return fragment(answer, _FIGURE.format(kind, shown.html))
 
 
 def write_report(

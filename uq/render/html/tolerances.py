@@ -14,14 +14,12 @@ from uq.assess.answer.wording import called, unit_of_input
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic
-from uq.assess.statistics.quantiles import quantiles
-from uq.assess.statistics.thresholds import thresholds
+from uq.assess.statistics.quantiles import quantiles, thresholds
 from uq.assess.what_if import weighting_of
 from uq.errors import InputError, RunError
 from uq.render.figures.words import meaning_of, symbol_beside
-from uq.render.html.encoded import IMPOSSIBLE, log_bytes
+from uq.render.html.embedded_columns import IMPOSSIBLE, log_bytes, parts_of
 from uq.render.html.moved_laws import Arguments, can_move, shifts, widths
-from uq.render.html.symbols import parts_of
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.law import Law
@@ -31,8 +29,7 @@ from uq.stats.estimate import Estimate
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain, toml
 from uq.text.numbers import capitalized, grouped, percent, percent_interval, printed
-from uq.text.symbols import readable
-from uq.text.units import beside
+from uq.text.units import beside, readable
 
 LISTED = "its values are listed and have neither width nor place"
 

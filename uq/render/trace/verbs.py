@@ -7,23 +7,28 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uq.assess.answer.answer import conclude, regimes_of, without_advice
-from uq.assess.answer.facts import Answer
 from uq.assess.answer.quantities import quantities
+from uq.assess.answer.study_answer import Answer
 from uq.assess.chosen_targets import chosen, output_in
-from uq.assess.convergence import enough, estimates_from
+from uq.assess.convergence import (
+    convergence_facts,
+    converging,
+    enough,
+    errors_facts,
+    estimates_from,
+    running_fact,
+)
 from uq.assess.design_sample import sample_of
 from uq.assess.fact import Fact
 from uq.assess.findings import Findings
-from uq.assess.fleet import fleet_of, the_life
-from uq.assess.fleet_json import fleet_facts
+from uq.assess.fleet import fleet_facts, fleet_of, the_life
 from uq.assess.level_shares import by_level
-from uq.assess.regime_boundary import BOUNDARY, boundary, boundary_facts
-from uq.assess.running_estimates import convergence_facts, converging, errors_facts, running_fact
+from uq.assess.regimes import BOUNDARY, boundary, boundary_facts
 from uq.assess.sampled_inputs import inputs_facts
 from uq.assess.sensitivities import sensitivities
-from uq.assess.sensitivity_json import sensitivity_facts
+from uq.assess.sensitivity_table import sensitivity_facts
 from uq.assess.summary import summarise
-from uq.assess.summary_json import levels_facts, summary_facts
+from uq.assess.summary_facts import levels_facts, summary_facts
 from uq.assess.targets import split_name
 from uq.assess.two_fidelities import twin_facts, with_twin
 from uq.assess.what_if import answer as answer_what_if

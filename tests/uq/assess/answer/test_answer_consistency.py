@@ -14,7 +14,7 @@ from nested_studies import nested_result
 
 from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import Ranking
-from uq.assess.answer.facts import Answer
+from uq.assess.answer.study_answer import Answer
 from uq.assess.fact import Fact
 
 MOVED = 1.9

@@ -8,7 +8,7 @@ from answered import lifetime, numbers
 from computed import asking, kinds, linear, with_output
 
 from uq import answer, trace
-from uq.assess.answer.verdict import verdict
+from uq.assess.answer.answer import verdict
 from uq.assess.findings import Findings
 from uq.render.html.answer import fragment
 from uq.result.result import Result

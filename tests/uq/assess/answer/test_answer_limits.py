@@ -8,7 +8,7 @@ from computed import asking, linear, with_output
 from uq import answer, summary, trace
 from uq.assess.answer.limits import limit_of
 from uq.assess.answer.wording import DisplayUnit
-from uq.assess.event_curve import EventCurve, event_curve
+from uq.assess.effects import EventCurve, event_curve
 from uq.stats.estimate import Estimate
 
 

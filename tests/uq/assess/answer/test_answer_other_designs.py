@@ -9,7 +9,7 @@ from computed import UNIFORM, asking, computed, linear, study_of, with_output
 import uq
 from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import Contribution, Ranking
-from uq.assess.answer.regime_mixing import intermingled
+from uq.assess.answer.levels import intermingled
 from uq.render.html.answer import fragment
 from uq.stats.estimate import Estimate
 

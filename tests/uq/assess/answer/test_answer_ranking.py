@@ -47,7 +47,7 @@ def test_an_effect_without_a_direction_has_no_size():
 
 def test_a_large_design_ranks_inputs_by_its_first_rows(monkeypatch):
     ds = linear(samples=400)
-    monkeypatch.setattr("uq.result.ranked_rows.RANKED", 300)
+    monkeypatch.setattr("uq.result.nesting.RANKED", 300)
     few = answer(ds).lead.ranking
     alone = answer(first_samples(ds, 300)).lead.ranking
     assert few.contributions == alone.contributions

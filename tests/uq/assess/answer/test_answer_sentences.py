@@ -19,11 +19,10 @@ from computed import (
 from nested_studies import nested_result
 from scipy.stats import binomtest
 
-from uq.assess.answer.answer import answer
-from uq.assess.answer.facts import Answer
+from uq.assess.answer.answer import answer, verdict
 from uq.assess.answer.parts import Event
 from uq.assess.answer.remedies import TighterTolerance
-from uq.assess.answer.verdict import verdict
+from uq.assess.answer.study_answer import Answer
 from uq.assess.findings import Findings
 from uq.cli.summary_tables import show_answer
 from uq.contract import Status

@@ -17,8 +17,7 @@ from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
 from uq import plots
 from uq.errors import InputError
-from uq.render.figures.figure import lay_out
-from uq.render.figures.style import COLOURS
+from uq.render.figures.figure import COLOURS, lay_out
 from uq.text.numbers import percent
 
 

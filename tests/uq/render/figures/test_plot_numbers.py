@@ -12,7 +12,7 @@ from computed import asking, kinds, linear, summarised, with_output
 from drawn import words
 
 from uq import plots
-from uq.render.figures.style import COLOURS, thinned
+from uq.render.figures.figure import COLOURS, thinned
 from uq.render.figures.words import as_label
 
 DAY = 86400.0

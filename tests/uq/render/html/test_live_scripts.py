@@ -8,9 +8,8 @@ from computed import linear
 from report_scripts import scripts
 
 from uq.assess.findings import Findings
-from uq.render.html.axes import axis_of, common_digits
+from uq.render.html.embedded_columns import axis_of, common_digits, encoded
 from uq.render.html.embedded_rows import rows_inside
-from uq.render.html.encoded import encoded
 from uq.result.result import Result
 
 

@@ -16,7 +16,7 @@ from computed import (
 )
 from read_pages import Page, read
 
-from uq.assess.answer.sources import mark
+from uq.assess.answer.wording import mark
 from uq.assess.findings import Findings
 from uq.contract import Status
 from uq.plots import FIGURES

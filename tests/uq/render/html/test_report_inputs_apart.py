@@ -5,7 +5,7 @@ import pytest
 from computed import UNIFORM, asking, linear, with_output
 from explored import cells, drag_handle, ranges
 
-from uq.assess.independent_inputs import independent_inputs
+from uq.assess.row_inputs import independent_inputs
 from uq.result.elements import independent_rows
 from uq.result.result import Result
 from uq.text.literals import toml

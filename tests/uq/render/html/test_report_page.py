@@ -11,13 +11,12 @@ from matplotlib.figure import Figure
 
 from uq.contract import Status
 from uq.plots import FIGURES
-from uq.render.html.layout import templates
-from uq.render.html.page import page
+from uq.render.html.embedded_columns import indexed
+from uq.render.html.page import page, templates
 from uq.render.html.pictures import picture
-from uq.render.html.symbols import indexed
 from uq.result.result import Result
 from uq.text.literals import plain
-from uq.text.symbols import symbol
+from uq.text.units import symbol
 
 
 @pytest.fixture(scope="module")

@@ -14,8 +14,7 @@ from read_pages import Page, read
 
 from uq.assess.findings import Findings
 from uq.render.html.page import page
-from uq.render.html.paths import shortened
-from uq.render.html.pictures import HEAVIEST_SVG, picture, pictures
+from uq.render.html.pictures import HEAVIEST_SVG, picture, pictures, shortened
 from uq.result.result import Result
 
 BY_REGIME = 'aria-label="Rows by regime, against the inputs that best separate the regimes"'

@@ -17,8 +17,8 @@ from uq.assess.population import Population
 from uq.assess.what_if import answer, read_changes, what_if_facts
 from uq.contract import Status
 from uq.errors import RunError
+from uq.render.html.embedded_columns import IMPOSSIBLE, log_bytes
 from uq.render.html.embedded_rows import rows_inside
-from uq.render.html.encoded import IMPOSSIBLE, log_bytes
 from uq.render.html.moved_laws import can_move, shifts, widths
 from uq.render.html.tolerances import FEWEST
 from uq.result.result import Result

@@ -16,7 +16,7 @@ from nested_studies import nested
 import uq as api
 from uq.assess.answer.answer import answer
 from uq.errors import InputError
-from uq.explore.row_again import row
+from uq.explore.single_rows import row
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
 from uq.learning.posterior_result import as_unit

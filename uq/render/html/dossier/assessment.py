@@ -5,10 +5,10 @@ from shlex import quote
 
 from uq.assess.findings import Findings
 from uq.render.html.cells import Cell, HtmlTable
-from uq.render.html.dossier.items import Item
+from uq.render.html.dossier.outline import Item
 from uq.render.html.inputs import fixed_inputs, input_tables
+from uq.render.html.page import references
 from uq.render.html.pictures import pictures
-from uq.render.html.references import references
 from uq.study.file import Tied
 from uq.study.provenance import provenance
 from uq.text.numbers import quantity

@@ -1,4 +1,4 @@
-"""The headings of a dossier, and the documents that they follow.
+"""Headings of a dossier, the documents that they follow, and the items expected under them.
 
 The headings are the topics on which RG 1.245 asks a submittal to report (its section C.2), in that
 order, and the conclusions of NUREG/CR-7278, its technical basis; JCGM 101 adds what belongs to the
@@ -8,11 +8,55 @@ have not been compared word for word, their finer numbers are not given, and a d
 guide (DG-1422, February 2024) is not followed. Check the guide before a submittal relies on it.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
+from markupsafe import Markup
+
 from uq.assess.findings import Findings
-from uq.render.html.dossier.items import Item
+from uq.render.html.cells import HtmlTable
+from uq.render.html.indices import IndexTable
+from uq.render.html.pictures import Picture
+
+
+@dataclass(frozen=True)
+class Item:
+    """One thing that is expected under a heading.
+
+    Attributes
+    ----------
+    title : str
+    text : sequence of str
+        Paragraphs.
+    facts : sequence of tuple of str
+        Names and values.
+    tables : sequence of HtmlTable
+    pictures : sequence of Picture
+    subjects : sequence of IndexTable
+        Indices.
+    code : str
+        Text as it stands in a file.
+    html : Markup
+    notes : sequence of str
+        Small print: without the above, it provides nothing.
+    """
+
+    title: str
+    text: Sequence[str] = ()
+    facts: Sequence[tuple[str, str]] = ()
+    tables: Sequence[HtmlTable] = ()
+    pictures: Sequence[Picture] = ()
+    subjects: Sequence[IndexTable] = ()
+    code: str = ""
+    html: Markup = Markup()
+    notes: Sequence[str] = ()
+
+    @property
+    def is_provided(self) -> bool:
+        """Whether there is anything but small print."""
+        held = (self.text, self.facts, self.tables, self.pictures, self.subjects, self.code)
+        return any((*held, self.html))
 
 
 class Heading(NamedTuple):

@@ -1,0 +1,233 @@
+"""Sensitivity from expansions by SALib: extended FAST and HDMR."""
+
+import warnings
+from itertools import combinations
+from math import floor
+from typing import Any
+
+import numpy as np
+
+from uq.contract import Floats
+from uq.indices.index import ALL_NOISE, S1, S2, SHAPLEY, ST, IndexKind, Indices, Null, RefusedError
+from uq.indices.method import DesignSample
+from uq.sampling.unit_cube import HARMONICS
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import is_constant
+
+
+def fast_indices(sample: DesignSample) -> Indices:
+    """Estimate first-order and total indices.
+
+    Parameters
+    ----------
+    sample : DesignSample
+        Of curves, one for each input.
+
+    Returns
+    -------
+    Indices
+        ``S1`` and ``ST``, means over replicates, without intervals: the scatter between replicates,
+        which the notes report, does not include the error of representing an input by a few
+        harmonics, many times larger for the Ishigami function. For a random model they are shares
+        of the mean variance at one seed: curves are weighted by their variance.
+
+    Raises
+    ------
+    RefusedError
+        No whole curve for some input, or a constant output.
+
+    References
+    ----------
+    A. Saltelli, S. Tarantola, K. P.-S. Chan, "A quantitative model-independent method for global
+    sensitivity analysis of model output", Technometrics 41, 39-56 (1999).
+    """
+    y, whole = sample.grouped, sample.whole
+    parameters = [label.removeprefix("curve_") for label in sample.blocks]
+    for name, complete in zip(parameters, whole.T, strict=True):
+        if not complete.any():
+            raise RefusedError(f"none of {len(whole)} curves for {name} has a value in each row")
+    moves = np.array([[not sample.is_constant(curve) for curve in curves] for curves in y])
+    if sample.random and not (moves & whole).any(axis=0).all():
+        raise RefusedError(ALL_NOISE)
+    if not sample.random and not moves[whole].all():
+        raise RefusedError("the same value along a whole curve: there is no variance to apportion")
+    points = y.shape[2]
+    omega = floor((points - 1) / (2 * HARMONICS))
+    # The estimator loses digits for values far from zero.
+    y = y - y[whole].mean(axis=(0, 1))
+    indices: dict[IndexKind, dict[str, Estimate]] = {S1: {}, ST: {}}
+    scatter = dict.fromkeys(indices, 0.0)
+    for i, name in enumerate(parameters):
+        moving = y[whole[:, i] & moves[:, i], i]
+        shares = np.array([_orders(curve, omega) for curve in moving])
+        spread = moving.var(axis=1).reshape(len(moving), -1).sum(axis=1)
+        weights = spread if sample.random else None
+        for kind, column in zip(indices, shares.T, strict=True):
+            indices[kind][name] = Estimate(float(np.average(column, weights=weights)))
+            if len(column) > 1:
+                scatter[kind] = max(scatter[kind], float(column.std(ddof=1)))
+    deviations = " and ".join(f"{kind.key} by {sd:.2g}" for kind, sd in scatter.items() if sd)
+    seen = f": between replicates {deviations} at most (standard deviation)" if deviations else ""
+    notes = [
+        "no intervals: the method's own error, from representing an input by a few harmonics, does"
+        f" not show in the scatter{seen}"
+    ]
+    others, room = len(parameters) - 1, omega // (2 * HARMONICS)
+    if room < others:
+        needed = 4 * HARMONICS**2 * others + 1
+        notes.append(
+            f"{others} inputs share {room} frequencies; samples = {needed} would give each its own"
+        )
+    return Indices(indices, tuple(notes))
+
+
+def _orders(curve: Floats, omega: int) -> Floats:
+    """Return S1 and ST from the output along a curve, shape (points,) or (points, e).
+
+    Indices of several elements are averaged, weighted by their variance.
+    """
+    from SALib.analyze.fast import compute_orders
+
+    elements = curve.reshape(len(curve), -1).T
+    moving = elements[[not is_constant(element) for element in elements]]
+    orders = [compute_orders(element, len(element), HARMONICS, omega) for element in moving]
+    weights = moving.var(axis=1)
+    return np.average(orders, axis=0, weights=weights / weights.sum())
+
+
+EXPLAINED = 0.8
+"""An expansion that explains less of the rows held out does not represent the output."""
+
+_DEGREES = (2, 4, 6, 8)  # and the highest that an input of few values allows
+_ENOUGH = 0.99
+_LEAST_VALUES = 10
+_MIN_ROWS = 600  # SALib accepts no fewer than the 300 that are not held out
+_MOST_ROWS = 2048
+_TERMS_PER_ROW = 0.8
+_MOST_TERMS = 500
+
+
+def hdmr_indices(sample: DesignSample) -> Indices:
+    """Estimate the indices of an expansion in functions of one and of two inputs.
+
+    Parameters
+    ----------
+    sample : DesignSample
+        Of independent inputs.
+
+    Returns
+    -------
+    Indices
+        ``S1``, ``S2``, ``ST`` and ``shapley``: S1 and half of the S2 that an input shares, which
+        are its Shapley effect where no three inputs interact [2]_. No intervals; the null is the
+        index of one input without effect.
+
+    Raises
+    ------
+    RefusedError
+        Few values or rows, an input with a single value, or no degree of polynomials explains
+        enough of the rows held out.
+
+    References
+    ----------
+    .. [1] G. Li et al., "Global sensitivity analysis for systems with independent and/or
+       correlated inputs", J. Phys. Chem. A 114, 6022-6032 (2010).
+    .. [2] A. B. Owen, "Sobol' indices and Shapley value", SIAM/ASA J. Uncertainty Quantification
+       2, 245-251 (2014).
+    """
+    x, y = sample.inputs, sample.values
+    if len(np.unique(y)) < _LEAST_VALUES:
+        raise RefusedError(
+            f"the output takes fewer than {_LEAST_VALUES} values, and polynomials cannot represent"
+            " it; use pawn"
+        )
+    if len(y) < _MIN_ROWS:
+        raise RefusedError(
+            f"only {len(y)} rows have a value; {_MIN_ROWS} are needed, half of them held out"
+        )
+    n = min(len(y), _MOST_ROWS)
+    names = [*x, ""]
+    rng = np.random.default_rng(0)
+    chosen = rng.permutation(len(y))[:n]  # imported rows may come in a meaningful order
+    columns = np.column_stack([*(column[chosen] for column in x.values()), rng.random(n)])
+    y = (y[chosen] - y[chosen].mean()) / y[chosen].std()
+    degrees, least = _degrees(names, columns[: n // 2])
+    degree, explained = _best(columns, y, degrees)
+    if not degree:
+        raise RefusedError(f"{n} rows are too few for the pairs of {len(x)} inputs")
+    if explained < EXPLAINED:
+        raise RefusedError(
+            f"functions of one and of two inputs explain {max(explained, 0):.0%} of the variance of"
+            f" rows held out; {EXPLAINED:.0%} are needed{least}"
+        )
+    share, k = np.ravel(_expansion(columns, y, degree)["S"]), len(names)
+    second = dict(zip(combinations(range(k), 2), share[k:], strict=True))
+    shared = np.array([sum(v for pair, v in second.items() if i in pair) for i in range(k)])
+    kinds = {S1: share[:k], ST: share[:k] + shared, SHAPLEY: share[:k] + shared / 2}
+    values = {
+        kind: {name: Estimate(float(v)) for name, v in zip(x, shares, strict=False)}
+        for kind, shares in kinds.items()
+    }
+    values[S2] = {
+        f"{names[i]},{names[j]}": Estimate(float(v)) for (i, j), v in second.items() if names[j]
+    }
+    note = (
+        f"polynomials of degree {degree} in one and in two inputs explain {explained:.1%} of the"
+        " variance of rows held out; half of the inputs without effect exceed the null"
+    )
+    nulls = {kind: Null(float(shares[-1]), exceeded=0.5) for kind, shares in kinds.items()}
+    return Indices(values, (note,), nulls)
+
+
+def _best(x: Floats, y: Floats, degrees: tuple[int, ...]) -> tuple[int, float]:
+    """Return the degree that explains most of the held-out variance (0: none), and its share."""
+    half, k = len(y) // 2, x.shape[1]
+    best, explained = 0, float("-inf")
+    for degree in degrees:
+        terms = k * degree + k * (k - 1) // 2 * degree**2
+        if explained > _ENOUGH or terms > min(_TERMS_PER_ROW * half, _MOST_TERMS):
+            break
+        # SALib takes the ranges of the inputs from the rows it is given: here from all of them.
+        expected = _expansion(x[:half], y[:half], degree).emulate(x)
+        gain = float(1 - (y - expected)[half:].var() / y[half:].var())
+        if not gain > explained:
+            break  # more terms than the rows can tell apart
+        best, explained = degree, gain
+    return best, explained
+
+
+def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
+    """Return the degrees to try, and why they are no higher: k values allow k - 1.
+
+    Raises
+    ------
+    RefusedError
+        For an input with a single value.
+    """
+    counts = [len(np.unique(column)) for column in x.T]
+    fewest, name = min(zip(counts, names, strict=True), key=lambda pair: pair[0])
+    if fewest == 1:
+        raise RefusedError(
+            f"{name} has the same value in all of {len(x)} rows: no polynomial can be fitted"
+        )
+    if fewest > max(_DEGREES):
+        return _DEGREES, ""
+    allowed = (*(d for d in _DEGREES if d < fewest - 1), fewest - 1)
+    return allowed, f" ({name} has {fewest} values, which allow no degree above {allowed[-1]})"
+
+
+def _expansion(x: Floats, y: Floats, degree: int) -> Any:
+    from SALib.analyze import enhanced_hdmr
+
+    names = [str(i) for i in range(x.shape[1])]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that there is no bootstrap
+        return enhanced_hdmr.analyze(
+            {"num_vars": len(names), "names": names},
+            x,
+            y,
+            poly_order=degree,
+            bootstrap=1,
+            subset=len(y),
+            return_emulator=True,
+        )
