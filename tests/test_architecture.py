@@ -214,3 +214,20 @@ def _named_by(node):
         case ast.FunctionDef(name=name) | ast.alias(asname=name) | ast.ExceptHandler(name=name):
             return name
     return None
+
+
+MOST_MODULES, MOST_PACKAGES = 300, 14
+"""What a newcomer can still take in."""
+
+
+def test_the_platform_stays_small():
+    modules = list((HOUSE / "uq").rglob("*.py"))
+    packages = [path for path in (HOUSE / "uq").iterdir() if (path / "__init__.py").exists()]
+    assert len(modules) <= MOST_MODULES
+    assert len(packages) <= MOST_PACKAGES
+
+
+def test_no_class_name_is_used_twice():
+    trees = (ast.parse(path.read_text()) for path in (HOUSE / "uq").rglob("*.py"))
+    names = [node.name for tree in trees for node in tree.body if isinstance(node, ast.ClassDef)]
+    assert {name for name in names if names.count(name) > 1} == set()
