@@ -2,6 +2,15 @@
 
 Every verb writes its numbers once, as a tree of facts. The renderers read it: JSON the numbers,
 terminal and HTML the sentences with their keys, ``uq trace`` functions and rows.
+
+    median = Fact({"value": 6.3, "low": 6.2, "high": 6.4}, by=(quantile,))
+    tree = Fact({"rows": 1000, "outputs": {"life": {"median": median}}}, by=(summarise,))
+    tree.json                                    # {"rows": 1000, "outputs": {"life": ...}}
+    tree.at("outputs", "life", "median").by      # (quantile,)
+    tree.at("rows").by                           # (summarise,): inherited
+
+A fact inherits functions and rows from the one that contains it, unless it has its own. Notes add
+up, but for a fact with functions of its own: it has notes of its own, too.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -22,10 +31,10 @@ class Fact:
 
     Attributes
     ----------
-    members : dict
-        Name -> number, words, `Fact`, list or dict of these, in the order of the JSON. A member
-        called ``sentence`` (``text`` of advice) says in words what the numbers are. A number alone
-        stands for itself.
+    members : dict, list or number
+        The content, in the order of the JSON: name -> number, words, `Fact`, list or dict of
+        these; or a list or a number alone. A member called ``sentence`` (``text`` in advice)
+        states the numbers in words.
     by : tuple of callable
         The functions that compute its numbers, and those of its facts without functions.
     by_member : dict of str to tuple of callable
@@ -40,7 +49,7 @@ class Fact:
     notes : tuple of str
         Sentences on how its functions compute it.
     more : dict
-        Further members, which the JSON omits.
+        Further members, reached by `at` alone: JSON, `each` and `walk` leave them out.
     """
 
     members: Any
