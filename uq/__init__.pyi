@@ -5,9 +5,9 @@ from .assess.answer.answer import answer as answer
 from .assess.comparison import compare as compare
 from .assess.convergence import enough as enough
 from .assess.convergence import running_estimates as running_estimates
-from .assess.fit_table import life_fits as life_fits
 from .assess.fleet import fleet as fleet
-from .assess.level_table import levels as levels
+from .assess.level_shares import levels as levels
+from .assess.life_fit import life_fits as life_fits
 from .assess.regimes import regimes as regimes
 from .assess.sensitivity_table import sensitivity as sensitivity
 from .assess.summary_table import summary as summary
@@ -20,8 +20,8 @@ from .execution.loading import load_study as load_study
 from .execution.runner import run as run
 from .explore.basins import basins as basins
 from .explore.rare_events import rare_event as rare_event
-from .explore.row_again import row as row
-from .explore.simulation import simulate as simulate
+from .explore.single_rows import row as row
+from .explore.single_rows import simulate as simulate
 from .explore.updating import update as update
 from .learning.answer import learnt as learnt
 from .learning.next_inspection import worth as worth

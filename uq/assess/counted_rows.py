@@ -51,6 +51,7 @@ class CountedRows(Sample):
             "probability_below": (share_of, share_interval),
             "quantile": (order_statistics.quantile, order_statistics.quantile_interval),
             "life_quantile": (CountedRows.life_quantile, kaplan_meier),
+            "never_ending": (share_interval,),
             "ended_by": (CountedRows.ended_by, kaplan_meier, CountedRows.survival),
         }
 

@@ -10,7 +10,7 @@ import numpy as np
 from uq.assess.fact import Fact
 from uq.assess.fleet_numbers import Banded, FleetNumbers
 from uq.assess.fleets import Units, units_of
-from uq.assess.population import Population
+from uq.assess.population import BY_WEIGHTS
 from uq.assess.row_inputs import inputs_of
 from uq.assess.scaling import without_effect
 from uq.assess.summary import why_no_intervals
@@ -283,7 +283,7 @@ def fleet_facts(fleets: Fleet) -> Fact:
         },
         "notes": fleets.notes,
     }
-    return Fact(quality | numbers, (fleet, Population), notes=notes)
+    return Fact(quality | numbers, (fleet, *BY_WEIGHTS), notes=notes)
 
 
 def _banded(banded: Banded) -> dict[str, Any]:

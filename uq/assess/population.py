@@ -30,6 +30,7 @@ from uq.stats.intervals import (
     Replicates,
     is_constant,
     replicates_of_some,
+    share_interval,
     upper_probability,
 )
 from uq.stats.roots import root
@@ -61,6 +62,7 @@ class Population(Sample):
             "probability_above": (Population.probability_above, Population),
             "probability_below": (Population.probability_below, Population),
             "quantile": (Population.quantile, Population),
+            "never_ending": (share_interval,) if self.weights is None else BY_WEIGHTS,
         }
 
     def probability_below(self, threshold: float) -> Estimate:
@@ -331,6 +333,10 @@ class Population(Sample):
         share, rows = self._near(beside)
         low, high = least(share, "high"), least(share, "low")
         return Estimate(value, low, high, self._why_open(probability, low, high, rows))
+
+
+BY_WEIGHTS: Functions = (Population,)
+"""The functions that compute the estimates of a population from weights and laws of its rows."""
 
 
 def as_sample(

@@ -20,8 +20,7 @@ from computed import (
 import uq
 from uq.assess import stopping
 from uq.assess.convergence import enough, running_estimates
-from uq.assess.summary_facts import twin_facts
-from uq.assess.two_fidelities import with_twin
+from uq.assess.two_fidelities import twin_facts, with_twin
 from uq.errors import InputError
 from uq.explore.rare_events import ESTIMATORS as RARE
 from uq.explore.rare_events import rare_event

@@ -200,7 +200,7 @@ def test_too_large_a_computation_ends_in_one_line(uq, result, monkeypatch):
     def without_memory(*arguments, **options):
         raise MemoryError("Unable to allocate 7 TiB")
 
-    monkeypatch.setattr("uq.result.result_file.open_result", without_memory)
+    monkeypatch.setattr("uq.result.result.open_result", without_memory)
     ended = uq("plot", result)
     assert (ended.code, ended.err) == (1, "uq: not enough memory: Unable to allocate 7 TiB\n")
 

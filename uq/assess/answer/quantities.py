@@ -35,7 +35,6 @@ from uq.assess.answer.wording import (
 from uq.assess.chosen_targets import chosen
 from uq.assess.effects import EventCurve, event_curve
 from uq.assess.findings import Findings
-from uq.assess.population import Population
 from uq.assess.row_inputs import independent_inputs
 from uq.assess.statistic import Context, Statistic
 from uq.assess.statistics.counts import never_ending
@@ -48,7 +47,6 @@ from uq.indices.methods import METHODS
 from uq.result.elements import Element
 from uq.result.result import Result
 from uq.stats.estimate import NOTHING
-from uq.stats.intervals import share_interval
 from uq.study.file import AnalysisTable
 from uq.text.numbers import threshold
 from uq.text.units import readable
@@ -167,7 +165,7 @@ def _quantity(
     fine = unit._replace(resolution=resolution_of(folded, _NARROW))
     promise = promise_of(findings.result, described, element, context.analysis, wanted, fine)
     by = {name: functions_of(best_quantile(described, p)) for name, p in _RANGE.items()}
-    by["never"] = (never_ending, share_interval if element.weights is None else Population)
+    by["never"] = (never_ending, *context.sample(element).by["never_ending"])
     return Quantity(
         element.name,
         element_called(findings.result, element),

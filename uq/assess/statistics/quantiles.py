@@ -38,8 +38,8 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
             estimator=sample.quantile_estimator(p),
             by=sample.by["quantile"],
         )
-        counted = element.is_lifetime and element.is_plain  # else no Kaplan-Meier curve
-        guess = sample.life_quantile(p) if counted else NOTHING
+        has_curve = element.is_lifetime and "life_quantile" in sample.by  # of Kaplan and Meier
+        guess = sample.life_quantile(p) if has_curve else NOTHING
         label = f"{statistic.label}, if"
         if guess.assumes:
             by = sample.by["life_quantile"]
