@@ -75,8 +75,8 @@ class SharedInfluence:
 class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
     """Cluster label of each row, where samples have several rows.
 
-    It stands for the replicate of each row: the sample, where samples are independent, else the
-    replicate that the sample belongs to.
+    It takes the place of the replicate of each row: the label is the sample if samples are
+    independent, otherwise the replicate to which the sample belongs.
 
     Attributes
     ----------

@@ -48,7 +48,7 @@ def turns(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
         NaN where there is none.
     size, allow : int
     are_alike : bool
-        Whether all units of a sample have the same distribution of lives.
+        Whether all units of a sample share one distribution of lives.
 
     Returns
     -------
@@ -158,7 +158,7 @@ def _of_any(ended: Floats, size: int, allow: int) -> Floats:
 
 
 _BELOW, _ABOVE = 0.15, 0.04
-"""Limits of the probability of a count up to, and beyond, a threshold, given the point."""
+"""Largest probability of a count up to the lower threshold, and above the upper, at a point."""
 
 _MOST_COUNTS = 200
 
