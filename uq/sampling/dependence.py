@@ -191,9 +191,9 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
         if cell is not None:
             low[:, i], high[:, i] = map(ndtri, cell(np.ascontiguousarray(first[:, i])))
     changed = u[:, 1:] != u[:, :1]
-    kind = np.where(changed, 2, (low < high)[:, None])  # a point, an interval, anywhere
+    kind = np.where(changed, 2, (low < high)[:, None])  # 0: point, 1: interval, 2: free
     since = changed.sum(axis=1, keepdims=True)
-    # Narrow intervals first: what is drawn in the others then is more often kept.
+    # Narrow intervals first: this increases the acceptance rate of the others.
     order = np.lexsort((np.where(changed, since, (high - low)[:, None]), kind), axis=-1)
 
     def ordered(values: Floats) -> Floats:

@@ -190,7 +190,7 @@ def normal_rule(z: Floats, nodes: int) -> tuple[Floats, Floats]:
 
 
 def law_of_sum(terms: list[LogTerm]) -> Term:
-    """Return the distribution of a sum of independent terms; the widest term is not tabulated."""
+    """Return the distribution of a sum of independent terms; the widest term enters exactly."""
     widest, *others = sorted(terms, key=lambda term: -term.spread)
     total: Term = widest
     for term in others:

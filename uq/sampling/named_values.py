@@ -85,7 +85,7 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
             continue
         with suppress(ValidationError):
             strict: TypeAdapter[Any] = TypeAdapter(types[name], config=ConfigDict(strict=True))
-            # A number stands for a word where the setting allows words such as nan and inf.
+            # A number represents a word if the setting allows words such as nan and inf.
             is_word = isinstance(value, float) and model.setting(name).choices
             values[name] = strict.validate_python(_frozen(str(value) if is_word else value))
         if name not in values or not _allowed(model, name, values[name]):
@@ -94,7 +94,7 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
         return None, problems
     try:
         return model.settings(**values), {}
-    except ValueError as error:  # of the model, about a combination of settings
+    except ValueError as error:  # raised by the model for a combination of settings
         return None, {"": one_line(error)}
 
 

@@ -119,10 +119,10 @@ def monte_carlo(seed: int, replicates: int, d: int, samples: int, start: int, st
 
 
 def paths(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    """Draw paths between two independent points, one input after the other in random order."""
+    """Return paths between two independent points; inputs change one by one in random order."""
     points = monte_carlo(seed, replicates, 3 * d, samples, start, stop)
     first, last, order = np.split(points[:, :, None], 3, axis=-1)
-    step = np.argsort(np.argsort(order, axis=-1), axis=-1)  # at which each input changes
+    step = np.argsort(np.argsort(order, axis=-1), axis=-1)  # step at which each input changes
     return np.where(step < np.arange(d + 1)[:, None], last, first)
 
 
