@@ -135,7 +135,7 @@ def one_more_row(
     Returns
     -------
     float
-        Half-width; zero if the variance rests on enough rows, or on a usual share of the rows.
+        Half-width; zero if the variance rests on enough rows, or on a sufficient share of them.
     """
     enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
     if replicates < 2 or effective_rows(deviations) >= enough:
@@ -198,7 +198,7 @@ def morris_indices(sample: DesignSample) -> Indices:
     (y, unit), whole = sized(sample.grouped), sample.whole  # squares neither overflow nor vanish
     if is_constant(y[whole]):
         raise RefusedError(NO_EFFECT)
-    # A step within one of several discrete values changes no input, and has no effect.
+    # A step within one discrete value changes no input, and has no effect.
     effects = np.einsum("rns,rnsp->rnp", np.diff(y, axis=2), sample.direction) / STEP
 
     replicates = [replicate[rows] for replicate, rows in zip(effects, whole, strict=True)]
