@@ -61,7 +61,7 @@ def slice_of(column: Floats, cuts: NDArray[np.intp], least: int = LEAST_ROWS) ->
 
 
 def _categories(counts: NDArray[np.intp], least: int) -> NDArray[np.intp]:
-    """Return the number of each value's slice: one each, and one of all rare values."""
+    """Return the slice of each value: one slice per value, and one for all rare values."""
     order = np.argsort(counts, kind="stable")
     rare = int((counts < least).sum())
     if rare:  # enough of them, with the next more frequent ones, to make a slice
@@ -141,7 +141,7 @@ def _random_balance(order: NDArray[np.intp], y: Floats, total: float) -> float:
     References
     ----------
     E. Plischke, "An effective algorithm for computing global sensitivity indices (EASI)", Reliab.
-    Eng. Syst. Saf. 95, 354-360 (2010). Less the share that noise has in so many harmonics: J.-Y.
+    Eng. Syst. Saf. 95, 354-360 (2010). Bias correction for noise in these harmonics: J.-Y.
     Tissot, C. Prieur, "Bias correction for the estimation of sensitivity indices based on random
     balance designs", Reliab. Eng. Syst. Saf. 107, 205-213 (2012).
     """
@@ -245,7 +245,7 @@ def pawn(x: Floats, y: Floats) -> Floats:
        input-output sample", Environ. Model. Softw. 108, 197-207 (2018).
     """
     order = np.argsort(y, kind="stable")
-    last = np.append(np.diff(y[order]) > 0, True)  # the distribution is defined at the last of equal y
+    last = np.append(np.diff(y[order]) > 0, True)  # F is defined at the last of equal y
     anywhere = np.flatnonzero(last)[:, None] / len(y) + 1 / len(y)
     # Slices: rows from one quantile up to the next.
     cuts = -(-np.arange(1, _PAWN_SLICES) * (len(y) - 1) // _PAWN_SLICES)

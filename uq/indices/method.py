@@ -77,7 +77,7 @@ class DesignSample:
 
     @property
     def grouped(self) -> Floats:
-        """The output by replicate, group and row, shape (R, N, k), or (R, N, k, e) with elements."""
+        """The output by replicate, group and row, shape (R, N, k) or (R, N, k, e)."""
         return self.values[self.groups]
 
     @cached_property

@@ -15,11 +15,11 @@ LEAST_LAGS = 8
 
 _MOST_LAGS = 100
 _FEWEST_LAGS = 4
-_LEAST_PAIRED = 0.1  # share of the pairs of rows some places apart that are of two replicates
-_FEWEST_EQUAL = 5  # rows with one value that show the variance at this value
+_LEAST_PAIRED = 0.1  # least share of pairs at one lag that are from different replicates
+_FEWEST_EQUAL = 5  # fewest rows of one value from which the variance at this value is estimated
 _MOST_NEIGHBOURS = 30
-_BENT = 3.0  # standard errors by which fewer lags may differ
-_JUMP = 16.0  # a squared residual from one side this many times that from the other side
+_BENT = 3.0  # standard errors by which the estimate from fewer lags may differ
+_JUMP = 16.0  # ratio of the squared residuals of both sides that indicates a jump
 
 
 class Residual(NamedTuple):
@@ -242,7 +242,7 @@ def _unbent(
     """
     used = np.array([_used(part, lag) for lag in lags])
     steps = np.sum((y[1:] - y[:-1]) ** 2, axis=1) / 2
-    product = float(np.mean(steps[2:] * steps[:-2]))  # estimates the product of neighbouring variances
+    product = float(np.mean(steps[2:] * steps[:-2]))  # product of neighbouring variances
     bend = 0.0
     while (half := len(lags) // 2) >= _FEWEST_LAGS:
         change = np.array(_weights(lags))
@@ -257,7 +257,7 @@ def _unbent(
 
 
 def _half_square(y: Floats, part: Replicates, lag: int) -> float:
-    """Return half the mean squared difference of rows at this lag."""
+    """Return half the mean squared difference of rows at this lag (empirical semivariogram)."""
     steps = y[lag:] - y[:-lag]
     if part is None:  # the rows at both ends count twice, in place of missing pairs
         first, last = steps[:lag].ravel(), steps[-lag:].ravel()

@@ -63,14 +63,14 @@ def paths_without_effect(sample: DesignSample, name: str) -> int:
 
 
 FOLDS = 4
-"""Of the paths: the polynomial that serves on one is fitted to the rows of all others."""
+"""Number of cross-fitting folds: the polynomial used on a fold is fitted to all other folds."""
 
 ROWS_EACH = 4
-"""Rows for each weight that is fitted to them."""
+"""Rows required per fitted coefficient."""
 
 MOST_TERMS = 250
 MOST_NUMBERS = 30_000_000
-"""In all products of all rows."""
+"""Largest number of values of all products over all rows."""
 
 
 def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
@@ -111,7 +111,7 @@ def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
 
 
 def _errors(sample: DesignSample, parts: Floats) -> Floats:
-    """Return the errors of a polynomial's contributions: estimates on each path minus exact ones."""
+    """Return the errors of a polynomial's contributions: estimates on paths minus exact values."""
     errors = np.zeros_like(parts)
     y = sample.grouped[sample.whole]
     n, rows = y.shape[:2]

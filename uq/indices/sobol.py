@@ -162,7 +162,7 @@ def total_order(a: Floats, ab: Floats, b: Floats) -> float:
 
 
 def second_order(a: Floats, ab: Floats, ab_other: Floats, ba: Floats, b: Floats) -> float:
-    """Return the second-order index S2 from the blocks A, AB_i, AB_j, BA_i and B (Saltelli 2002)."""
+    """Return the second-order index S2 from A, AB_i, AB_j, BA_i and B (Saltelli 2002)."""
     parts = (ba * ab_other - a * b, b * (ab - a), b * (ab_other - a))
     both, first, second = (_share(np.mean(part, axis=0), a, b) for part in parts)
     return both - first - second

@@ -56,7 +56,7 @@ class Elementary(ABC):
 
 @dataclass(frozen=True)
 class NormalLaw(Elementary):
-    """Normal law of a mean and a standard deviation."""
+    """Normal law, by mean and standard deviation."""
 
     mean: float
     sd: float
