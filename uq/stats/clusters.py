@@ -18,8 +18,9 @@ MOST_GROUPS = 32
 class SharedInfluence:
     """Influence of an estimated input law that all units share.
 
-    Each row weighs values of the input by what all rows say of them, so that an error of this law
-    is common to all. Its density is known up to 1 + e @ q: terms q that have mean 0, and errors e.
+    The law is estimated from all rows and weights the values of the input in each row. Its error is
+    therefore common to all rows. The density has the relative error 1 + e @ q, with terms q of mean
+    0 and errors e.
 
     Attributes
     ----------

@@ -26,9 +26,9 @@ def controlled_mean(
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Of independent rows; only those kept are used.
+        Values of independent rows; only kept rows are used.
     kept : ndarray of bool, shape (n,)
-        Where there is a value. The share of such rows is an estimate too: the mean is a ratio.
+        Mask of rows with a value. The share of these rows is also estimated: the mean is a ratio.
     controls : ndarray, shape (n, k)
         Cheap quantities of the same rows.
     many : ndarray, shape (M, k)
@@ -72,7 +72,7 @@ def controlled_share(
     estimate : Estimate
         A hit of the control is a value beyond a limit. The limit is chosen so that the control has
         as many hits as the rows have.
-        The interval is that of a share (`uq.stats.intervals.binomial_interval`) for the equivalent
+        The interval is binomial (`uq.stats.intervals.binomial_interval`) with the equivalent
         number of independent plain rows. With fewer than `FEWEST` hits, or misses, the gain of the
         control cannot be estimated, and the plain estimate is returned.
     reduction : float

@@ -45,7 +45,7 @@ def turns(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
     Parameters
     ----------
     lives : ndarray, shape (samples, units, repeats)
-        NaN where there is none.
+        NaN for missing lives.
     size, allow : int
     are_alike : bool
         Whether all units of a sample share one distribution of lives.

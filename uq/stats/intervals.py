@@ -135,8 +135,8 @@ def log_scatter_interval(estimates: Floats) -> Ends:
     Returns
     -------
     low, high : float
-        Student's interval of the logarithms about the mean; if some estimates are zero, that of
-        the estimates themselves, not below zero.
+        Student's interval of the logarithms about the mean. If any estimate is zero, Student's
+        interval of the estimates themselves, not below zero.
     """
     mean = float(estimates.mean())
     if (estimates > 0).all():

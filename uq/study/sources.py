@@ -86,7 +86,7 @@ def fingerprint(module: str) -> str:
     Parameters
     ----------
     module : str
-        Its full name.
+        Full name of the module.
     """
     code, _ = sources_of(module)
     return digest(code).hexdigest()[:16] if code else ""
