@@ -15,14 +15,14 @@ from uq.stats.quantile_functions import student
 from uq.stats.roots import root
 
 MOST_AT_STAKE = 2
-"""Number of successive checks at which independent rows may stop, for a given half-width."""
+"""Most successive checks at which independent rows may stop, for a given half-width."""
 
 _INDEPENDENT = (0.95, 0.970_614)
 """Confidence level of each interval for a joint coverage of 95 %: of one interval, and of two, the
 second of which uses twice the rows."""
 
 _STEPS = 32  # grid steps between two checks
-_SMALLEST, _LARGEST = 1e-6, 16.0  # range of the standard deviation of replicates over its mean
+_SMALLEST, _LARGEST = 1e-6, 16.0  # standard deviation of replicates over its expectation
 
 
 def of_independent_rows(checks: int) -> float:
