@@ -22,7 +22,7 @@ Mask = NDArray[np.bool_]
 Kind = Literal["value", "lifetime", "angle", "category"]
 
 LARGEST_VALUE = 1e300
-"""An output beyond it counts as missing: sums and differences of several could overflow."""
+"""Largest magnitude of an output; larger values count as missing, since sums could overflow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,17 +32,17 @@ class Parameter:
     Attributes
     ----------
     symbol : str
-        The symbol of the source paper.
+        Symbol in the source paper.
     unit : str
         CF unit string, ``"1"`` for a pure number.
     meaning : str
-        One line that a reader of a result understands.
+        One-line description for readers of a result.
     bounds : tuple of float
-        The admissible (not the plausible) range, both ends included.
+        Admissible (not plausible) range, both ends included.
     source : str
-        Where the nominal value comes from, and whether it is given, inferred, fitted or assumed.
+        Source of the nominal value, and whether it is given, inferred, fitted or assumed.
     initial : bool
-        Whether it is part of the initial condition: the start of a motion, not its machine.
+        Whether it belongs to the initial conditions of the motion rather than to the machine.
     """
 
     symbol: str
@@ -63,12 +63,12 @@ class Setting:
     unit : str
         ``"1"`` for a pure number.
     bounds : tuple of float, optional
-        Both ends included; for a list of numbers, or of lists of them, they apply to each.
+        Both ends included; for a list of numbers, or nested lists, they apply to each number.
     choices : tuple of str
-        The allowed values of a setting that is a word.
+        Allowed values of a setting that is a word.
     optional : bool
-        For a list, empty by default, of the coordinates of a dimension: while it is empty, the
-        model has no outputs along it, and studies are as if there were no such setting.
+        For a list of the coordinates of a dimension, empty by default. While it is empty, the model
+        has no outputs along this dimension, and studies behave as without this setting.
     """
 
     meaning: str
@@ -80,38 +80,39 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """One result of a model.
+    """An output of a model, declared with its unit and kind.
 
     Attributes
     ----------
     unit : str
     meaning : str
     kind : {"value", "lifetime", "angle", "category"}
-        A ``lifetime`` is +inf where the event never occurs and, unless `may_be_censored` is false,
-        ``batch`` returns a companion ``<name>_censored`` (bool). The magnitude of an ``angle`` is
-        compared with thresholds. A ``category`` is an index into `categories`.
+        A ``lifetime`` is +inf if the event never occurs; unless `may_be_censored` is false,
+        ``batch`` also returns ``<name>_censored`` (bool). Thresholds are compared with the
+        magnitude of an ``angle``. A ``category`` is an index into `categories`.
     dims : tuple of str
         Names of the dimensions beyond the row; their coordinates come from `Model.coordinates`.
     may_be_undefined : bool
-        Whether NaN is legitimate: the output has no meaning in the regime of the row.
+        Whether NaN is valid, for rows whose regime has no such output.
     may_be_censored : bool
         For lifetimes only.
     categories : tuple of str
         For categories only.
     accuracy : str
         Name of the setting that requests a relative accuracy of this output, if there is one. The
-        output ``<name>_error``, with the same dims, then gives an absolute error of each
-        value that nine in ten do not exceed.
+        output ``<name>_error``, with the same dims, then gives an absolute error bound of each
+        value, which nine in ten errors do not exceed.
     success : str
-        For lifetimes only: what has happened when it ends, where that is wished for, such as ``the
-        motors have locked``; by default the end is a failure.
+        For lifetimes only: description of a desired event, such as ``the motors have locked``; by
+        default the end of a lifetime is a failure.
     never_known_at_once : bool
         For lifetimes only: whether a life that never ends is recognised before any row is
-        censored, so that every censored row does end.
+        censored, so that every censored row would end later.
     scales : dict of str to float
-        For lifetimes only: parameter -> exponent. Over the bounds of these parameters the life is
-        exactly proportional to the product of their powers, rounding apart, whatever the values of
-        all others; a life that never ends does so for any value of these.
+        For lifetimes only: scaling exponent of each parameter. Within the bounds of these
+        parameters the life is exactly proportional to the product of their powers, except for
+        rounding, for any values of all other parameters. A life that never ends does so for any
+        value of these parameters.
     """
 
     unit: str
@@ -128,26 +129,26 @@ class Output:
 
     @property
     def is_lifetime(self) -> bool:
-        """Whether it is the time of an event, +inf where that never occurs."""
+        """Whether it is the time of an event, +inf if the event never occurs."""
         return self.kind == "lifetime"
 
     @property
     def is_angle(self) -> bool:
-        """Whether its sign is only a direction."""
+        """Whether it is an angle, whose sign is only a direction."""
         return self.kind == "angle"
 
     @property
     def is_category(self) -> bool:
-        """Whether it is one of `categories` instead of a number."""
+        """Whether it is an index into `categories` instead of a number."""
         return self.kind == "category"
 
     @property
     def has_censored_flag(self) -> bool:
-        """Whether ``batch`` returns ``<name>_censored`` beside this output."""
+        """Whether ``batch`` also returns ``<name>_censored``."""
         return self.is_lifetime and self.may_be_censored
 
     def is_absent(self, values: NDArray[Any]) -> NDArray[np.bool_]:
-        """Return which values are missing or impossible, in the shape of `values`."""
+        """Return the mask of missing or impossible values, in the shape of `values`."""
         if self.is_category:
             return values < 0
         if self.is_lifetime:
@@ -155,12 +156,12 @@ class Output:
         return ~(np.abs(values) <= LARGEST_VALUE)
 
     def is_invalid(self, values: NDArray[Any]) -> NDArray[np.bool_]:
-        """Return which values a model must not return: absent ones, but for a legitimate NaN."""
+        """Return the mask of values that a model must not return: absent, except a valid NaN."""
         absent = self.is_absent(values)
         return absent & ~np.isnan(values) if self.may_be_undefined else absent
 
     def absence(self, value: float) -> str:
-        """Return why a value is absent, as the predicate of a sentence."""
+        """Return the reason why a value is absent, as the predicate of a sentence."""
         why = ""
         if self.is_lifetime and -np.inf < value < 0:
             why = ": a life cannot be negative"
@@ -169,17 +170,17 @@ class Output:
         return f"is {value}{why}"
 
     def for_thresholds(self, values: Floats) -> Floats:
-        """Return the numbers compared with thresholds: the magnitude of an angle, else `values`."""
+        """Return the numbers to compare with thresholds: magnitudes of angles, else `values`."""
         return np.abs(values) if self.is_angle else values
 
 
 def censored_name(output: str) -> str:
-    """Return the name of the flag beside a lifetime."""
+    """Return the name of the censoring flag of a lifetime."""
     return f"{output}_censored"
 
 
 class Status(IntEnum):
-    """How a row ended; the names, in lower case with hyphens, are part of the result's schema."""
+    """Status of a row; the names, in lower case with hyphens, are part of the result's schema."""
 
     OK = 0
     OUT_OF_BUDGET = 1
@@ -191,12 +192,12 @@ class Status(IntEnum):
 
     @property
     def label(self) -> str:
-        """The name used in files and tables, such as ``out-of-budget``."""
+        """Name in files and tables, such as ``out-of-budget``."""
         return self.name.lower().replace("_", "-")
 
     @property
     def meaning(self) -> str:
-        """One sentence for a reader."""
+        """One-sentence description for readers."""
         return _STATUS_MEANING[self]
 
 
@@ -217,7 +218,7 @@ class _History(NamedTuple):
 
 
 class Trajectory(_History):
-    """One labelled time history, as ``simulate`` returns it: a pair, with notes for its picture.
+    """A labelled time history, as returned by ``simulate``: a pair with notes for its plot.
 
     Attributes
     ----------
@@ -226,13 +227,13 @@ class Trajectory(_History):
     quantities : dict of str to tuple
         Name -> (unit, meaning, values of shape (k,)).
     period : float
-        Of the drive at the end [s]; NaN if there is none.
+        Period of the drive at the end [s]; NaN if there is none.
     shown : tuple of str
-        The quantities that a picture shows, at most six; by default the first ones.
+        Quantities shown in a plot, at most six; by default the first ones.
     stops : dict of str to tuple
-        Quantity -> (lower, upper) values at which it meets a stop, NaN where there is none.
+        Quantity -> (lower, upper) values of its mechanical stops, NaN if there is none.
     angles : tuple of str
-        Quantities [rad] that turn round; a picture shows them between half a turn to each side.
+        Angles [rad] of rotating parts; a plot shows them wrapped to half a turn on each side.
     """
 
     period: float
@@ -250,7 +251,7 @@ class Trajectory(_History):
         stops: Mapping[str, tuple[float, float]] | None = None,
         angles: tuple[str, ...] = (),
     ) -> "Trajectory":
-        """Return the pair (time, quantities), with its notes."""
+        """Create the pair (time, quantities), with its notes."""
         self = super().__new__(cls, time, quantities)
         self.period, self.shown, self.stops, self.angles = period, shown, stops or {}, angles
         return self
@@ -262,8 +263,8 @@ Batch = Callable[
     | tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]],
 ]
 """``batch(x, seed, settings)``: x (n, d) in declared order, seed (n,), a settings object ->
-({output name: (n, *dims)}, status (n,) int8), and optionally {i: sentence} of rows that failed.
-Row i depends on x[i], seed[i] and settings alone."""
+({output name: (n, *dims)}, status (n,) int8), and optionally {i: sentence} for failed rows.
+Row i depends only on x[i], seed[i] and settings."""
 
 
 def _no_coordinates(settings: Any) -> Mapping[str, Sequence[Any]]:
@@ -272,7 +273,7 @@ def _no_coordinates(settings: Any) -> Mapping[str, Sequence[Any]]:
 
 @dataclass(frozen=True)
 class Model:
-    """A machine as the platform sees it.
+    """A model of a machine: its parameters, settings, outputs and functions.
 
     Attributes
     ----------
@@ -280,7 +281,8 @@ class Model:
     title : str
         One line.
     version : str
-        Changes whenever the same input may give different numbers; part of a study's identity.
+        Version, which changes whenever the same input may give different numbers; part of the
+        identity of a study.
     parameters : type
         A NamedTuple class; each field ``Annotated[float, Parameter(...)] = nominal``.
     settings : type
@@ -291,22 +293,22 @@ class Model:
     simulate : callable, optional
         ``simulate(params, settings, seed=0) -> Trajectory``.
     coordinates : callable
-        ``coordinates(settings) -> {dimension: values}`` for every dimension the outputs name. For
-        an empty one, ``batch`` returns no outputs along it.
+        ``coordinates(settings) -> {dimension: values}`` for every dimension of the outputs. If a
+        dimension is empty, ``batch`` returns no outputs along it.
     dimensions : dict of str to tuple
         Dimension -> (unit, meaning), for coordinates that are quantities.
     cheap : dict of str to Batch
-        Outputs that can be computed alone at a fraction of a row's cost -> a batch that returns
-        only this output, with the same bits.
+        Output that can be computed separately at a fraction of the cost of a row -> a batch that
+        returns only this output, with the same bits.
     random : bool
-        Whether rows depend on their seed. Rows that a design compares with each other then share
-        one, so that noise is not attributed to an input.
+        Whether rows depend on their seed. Rows that a design compares with each other then share a
+        seed, so that noise is not attributed to an input.
     random_unless : dict of str to float
         Parameter -> the value at which a random model is deterministic, such as a noise level of 0.
     block : int
-        Rows that the kernel advances together; shorter chunks waste work.
+        Number of rows that the kernel advances together; shorter chunks are less efficient.
     references : tuple of str
-        What to cite.
+        References to cite.
     """
 
     name: str
@@ -332,9 +334,9 @@ class Model:
         )
 
     def given(self, settings: Any) -> "Model":
-        """Return the model with the outputs that it computes under these settings.
+        """Return the model with only the outputs that it computes with these settings.
 
-        Those along a dimension without coordinates are left out.
+        Outputs along a dimension without coordinates are excluded.
         """
         axes = self.coordinates(settings)
         some = {
@@ -345,7 +347,7 @@ class Model:
         return self if len(some) == len(self.outputs) else replace(self, outputs=some)
 
     def choices_of(self, settings: Any) -> dict[str, Any]:
-        """Return the settings by name, without empty ones that are `Setting.optional`."""
+        """Return the settings by name, except empty settings that are `Setting.optional`."""
         return {
             name: value
             for name, value in asdict(settings).items()

@@ -1,4 +1,4 @@
-"""Errors for the user: plain lines, never a traceback."""
+"""Exceptions with messages for the user: plain lines instead of a traceback."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -6,12 +6,12 @@ from difflib import get_close_matches
 
 
 class InputError(Exception):
-    """Bad input, explained.
+    """Raised for invalid input, with one line per fault.
 
     Parameters
     ----------
     *lines : str
-        One complete sentence per fault: where, which value, what is allowed.
+        One complete sentence per fault: location, value, and allowed values.
     """
 
     def __init__(self, *lines: str):
@@ -19,7 +19,7 @@ class InputError(Exception):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The faults, one line each."""
+        """The faults, one per line."""
         return self.args
 
     def __str__(self) -> str:
@@ -28,12 +28,12 @@ class InputError(Exception):
 
 @contextmanager
 def first_fault_alone() -> Iterator[None]:
-    """Shorten the faults of a part of a result to one line: nobody edits it there.
+    """Reduce the faults raised in this context to one line, for text that users do not edit.
 
     Raises
     ------
     InputError
-        The first of several faults, and the number of others.
+        The first fault, and the number of further faults.
     """
     try:
         yield
@@ -45,19 +45,19 @@ def first_fault_alone() -> Iterator[None]:
 
 
 class RunError(Exception):
-    """A run that gives no result although its input is valid: one plain sentence."""
+    """Raised if a run with valid input gives no result; the message is one plain sentence."""
 
 
-_LONGEST = 500  # characters of a text that a model wrote
+_LONGEST = 500  # largest number of characters shown of a model's message
 
 
 def one_line(error: BaseException) -> str:
-    """Return the text of an exception in one line, which may be empty."""
+    """Return the message of an exception on one line; it may be empty."""
     return " ".join(str(error).split())
 
 
 def described(error: BaseException) -> str:
-    """Return the kind of an exception and the beginning of its text in one line."""
+    """Return the type of an exception and the beginning of its message on one line."""
     text = one_line(error)
     if len(text) > _LONGEST:
         text = text[:_LONGEST] + " ..."
@@ -65,7 +65,7 @@ def described(error: BaseException) -> str:
 
 
 def choices(names: Iterable[str], most: int = 6) -> str:
-    """Return the first of some names for an error line: ``a, b, c and 4 more``."""
+    """Return a shortened list of names for an error line: ``a, b, c and 4 more``."""
     all_names = list(names)
     more = len(all_names) - most
     shown = ", ".join(all_names[:most]) or "none"
@@ -78,14 +78,14 @@ def nearest(name: str, choices: Iterable[str]) -> str:
     Parameters
     ----------
     name : str
-        What was given.
+        Name given by the user.
     choices : iterable of str
-        What is allowed.
+        Allowed names.
 
     Returns
     -------
     str
-        To be appended to an error line.
+        Text to append to an error line.
     """
     by_lower = {choice.lower(): choice for choice in choices}
     close = get_close_matches(name.lower(), by_lower, n=1)

@@ -1,7 +1,8 @@
-"""All figures, and the one table of the figures of a result, which `uq plot` and the report read.
+"""Registry of the figures of a result, used by `uq plot` and the report, and all plot functions.
 
 A figure is a function ``f(ds, output, *, axes=None)`` that returns a matplotlib figure: a new one,
-or that of the given axes. To add one for results, write its file and an entry of `FIGURES`.
+or the figure of the given axes. To add a figure for results, write its file and add an entry to
+`FIGURES`.
 """
 
 import os
@@ -105,7 +106,7 @@ FIGURES: dict[str, Entry] = {
         section="inputs",
     ),
 }
-"""Figures of a result, in the order of `uq plot`; keys are the first words of file names."""
+"""Figures of a result, in the order of `uq plot`; file names begin with their keys."""
 
 
 def save_all(result: Result, folder: str | Path) -> list[Path]:
@@ -114,7 +115,7 @@ def save_all(result: Result, folder: str | Path) -> list[Path]:
     Parameters
     ----------
     result : Result
-        A result.
+        Result to draw.
     folder : path-like
         Created if it does not exist.
 
@@ -126,7 +127,7 @@ def save_all(result: Result, folder: str | Path) -> list[Path]:
     Raises
     ------
     InputError
-        When the folder cannot be created or written to.
+        The folder cannot be created or written to.
     """
     folder = Path(folder)
     refuse_standard_output(folder)

@@ -1,4 +1,4 @@
-"""Sensitivity from expansions by SALib: extended FAST and HDMR."""
+"""Sensitivity indices from SALib's expansions: extended FAST and HDMR."""
 
 import warnings
 from itertools import combinations
@@ -16,25 +16,25 @@ from uq.stats.intervals import is_constant
 
 
 def fast_indices(sample: DesignSample) -> Indices:
-    """Estimate first-order and total indices.
+    """Estimate first-order and total indices by extended FAST.
 
     Parameters
     ----------
     sample : DesignSample
-        Of curves, one for each input.
+        Sample of curves, one for each input.
 
     Returns
     -------
     Indices
-        ``S1`` and ``ST``, means over replicates, without intervals: the scatter between replicates,
-        which the notes report, does not include the error of representing an input by a few
-        harmonics, many times larger for the Ishigami function. For a random model they are shares
-        of the mean variance at one seed: curves are weighted by their variance.
+        ``S1`` and ``ST``, means over replicates, without intervals. The notes report the scatter
+        between replicates. It does not include the error of representing an input by a few
+        harmonics, which is many times larger for the Ishigami function. For a random model they are
+        shares of the mean variance at one seed: curves are weighted by their variance.
 
     Raises
     ------
     RefusedError
-        No whole curve for some input, or a constant output.
+        An input has no complete curve, or the output is constant.
 
     References
     ----------
@@ -84,7 +84,7 @@ def fast_indices(sample: DesignSample) -> Indices:
 def _orders(curve: Floats, omega: int) -> Floats:
     """Return S1 and ST from the output along a curve, shape (points,) or (points, e).
 
-    Indices of several elements are averaged, weighted by their variance.
+    Indices of several elements are averaged with their variances as weights.
     """
     from SALib.analyze.fast import compute_orders
 
@@ -96,9 +96,9 @@ def _orders(curve: Floats, omega: int) -> Floats:
 
 
 EXPLAINED = 0.8
-"""An expansion that explains less of the rows held out does not represent the output."""
+"""Smallest explained share of the held-out variance for which an expansion is accepted."""
 
-_DEGREES = (2, 4, 6, 8)  # and the highest that an input of few values allows
+_DEGREES = (2, 4, 6, 8)  # and the highest degree that an input with few values allows
 _ENOUGH = 0.99
 _LEAST_VALUES = 10
 _MIN_ROWS = 600  # SALib accepts no fewer than the 300 that are not held out
@@ -108,25 +108,25 @@ _MOST_TERMS = 500
 
 
 def hdmr_indices(sample: DesignSample) -> Indices:
-    """Estimate the indices of an expansion in functions of one and of two inputs.
+    """Estimate sensitivity indices by HDMR, an expansion in functions of one and two inputs.
 
     Parameters
     ----------
     sample : DesignSample
-        Of independent inputs.
+        Sample with independent inputs.
 
     Returns
     -------
     Indices
-        ``S1``, ``S2``, ``ST`` and ``shapley``: S1 and half of the S2 that an input shares, which
-        are its Shapley effect where no three inputs interact [2]_. No intervals; the null is the
+        ``S1``, ``S2``, ``ST`` and ``shapley``. The latter is S1 plus half of every S2 of the input:
+        its Shapley effect if no three inputs interact [2]_. There are no intervals; the null is the
         index of one input without effect.
 
     Raises
     ------
     RefusedError
-        Few values or rows, an input with a single value, or no degree of polynomials explains
-        enough of the rows held out.
+        There are too few values or rows, an input has a single value, or no polynomial degree
+        explains enough of the held-out variance.
 
     References
     ----------
@@ -187,22 +187,22 @@ def _best(x: Floats, y: Floats, degrees: tuple[int, ...]) -> tuple[int, float]:
         terms = k * degree + k * (k - 1) // 2 * degree**2
         if explained > _ENOUGH or terms > min(_TERMS_PER_ROW * half, _MOST_TERMS):
             break
-        # SALib takes the ranges of the inputs from the rows it is given: here from all of them.
+        # SALib takes the ranges of the inputs from the given rows: here from all rows.
         expected = _expansion(x[:half], y[:half], degree).emulate(x)
         gain = float(1 - (y - expected)[half:].var() / y[half:].var())
         if not gain > explained:
-            break  # more terms than the rows can tell apart
+            break  # more terms than the rows can identify
         best, explained = degree, gain
     return best, explained
 
 
 def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
-    """Return the degrees to try, and why they are no higher: k values allow k - 1.
+    """Return the degrees to try, and the reason for their limit: k values allow degree k - 1.
 
     Raises
     ------
     RefusedError
-        For an input with a single value.
+        An input has a single value.
     """
     counts = [len(np.unique(column)) for column in x.T]
     fewest, name = min(zip(counts, names, strict=True), key=lambda pair: pair[0])
@@ -221,7 +221,7 @@ def _expansion(x: Floats, y: Floats, degree: int) -> Any:
 
     names = [str(i) for i in range(x.shape[1])]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that there is no bootstrap
+        warnings.simplefilter("ignore")  # the warning that there is no bootstrap
         return enhanced_hdmr.analyze(
             {"num_vars": len(names), "names": names},
             x,

@@ -1,4 +1,4 @@
-"""First-order indices from a plain sample, with intervals."""
+"""First-order Sobol' indices from a plain sample, with confidence intervals."""
 
 from collections.abc import Mapping
 from itertools import combinations_with_replacement
@@ -21,47 +21,49 @@ from uq.stats.intervals import Replicates, replicates_of_some, upper_probability
 from uq.stats.quantile_functions import student
 
 ENOUGH_ROWS = 200
-"""Rows from which indices have intervals. Of an input that matters in 3 % of the rows alone, those
-of 100 rows would cover 84 %, of 200 rows 92 %, of 300 rows 98 %. Whether they are given must not
-depend on the values: samples without the rows that decide would look the surest."""
+"""Minimum sample size for intervals of indices. For an input that has an effect in only 3 % of the
+rows the coverage would be 84 % with 100 rows, 92 % with 200 rows and 98 % with 300 rows. The
+criterion must not depend on the values: samples that lack the decisive rows would have the
+narrowest intervals."""
 
 _IMPOSSIBLE = 0.999
-"""Confidence that indices add up to more than 1 with which none of them is believed."""
+"""Confidence level at which a sum of indices above 1 leads to the rejection of all indices."""
 
 _FEW = f"has no interval: {ENOUGH_ROWS} rows are needed"
 
 
 def first_order_indices(sample: DesignSample) -> Indices:
-    """Estimate the share of the variance that each input explains alone.
+    """Estimate first-order indices: the share of the variance that each input explains alone.
 
     Parameters
     ----------
     sample : DesignSample
-        Of independent inputs; of a whole output the variances of its elements are summed.
+        Sample with independent inputs; for an output with several elements their variances are
+        summed.
 
     Returns
     -------
     Indices
-        ``S1``, 1 less the variance that is left when an input is known over that of all rows
-        (`uq.indices.residual_variance`), without bias however steep the output is. Intervals are
-        Student's, on the scale of log(1 - S1), by the influence of each row [1]_, raised at both
-        ends by one more row as influential as the most influential. They are those of independent
-        rows for replicates, too, whose mean influence scatters no more; a few replicates may have
-        as many rows each beyond a jump, and hide its error. None of fewer than `ENOUGH_ROWS` rows;
-        of an event, inputs without effect then show what is negligible. Of one replicate, whose
-        rows depend on each other, the index is that of random balance, beside inputs without
-        effect.
+        ``S1``, which is 1 minus the residual variance given the input divided by the total variance
+        (`uq.indices.residual_variance`). It is unbiased, even for steep outputs. Intervals are
+        Student's, on the scale log(1 - S1), from the influence of each row [1]_. Both ends are
+        widened by one more row as influential as the most influential. The intervals for
+        independent rows are used for replicates too: their mean influence scatters no more, and a
+        few replicates may all have the same number of rows beyond a jump, which hides its error.
+        Fewer than `ENOUGH_ROWS` rows have no intervals; for an event, the null from inputs without
+        effect then shows which indices are negligible. For a single replicate, whose rows are
+        dependent, the index is the random balance estimate, with this null.
 
     Raises
     ------
     RefusedError
-        The indices add up to more than 1, by more than their errors.
+        The sum of the indices exceeds 1 by more than its error.
 
     Notes
     -----
-    No estimator sees what no row shows: a defect in 3.7 / n of the rows is in none of them once in
-    forty samples, in which other inputs explain its share as well. Of waves as short as five rows
-    each, none sees more than noise.
+    No estimator detects an effect that no row shows. An effect with probability 3.7 / n is absent
+    from one in forty samples of n rows, and in these samples its share is attributed to other
+    inputs. Waves of only five rows each cannot be distinguished from noise.
 
     References
     ----------
@@ -83,7 +85,7 @@ def first_order_indices(sample: DesignSample) -> Indices:
     values, products, widest, widest_sum = _shares(sample.inputs, y, part)
 
     def unexplained(quantile: float) -> Estimate:
-        """Return 1 less the sum of all indices."""
+        """Return 1 minus the sum of all indices, with its interval."""
         value = float(1 - values.sum())
         half = quantile * max(float(products.sum()), 0.0) ** 0.5
         return Estimate(value, value - half - widest_sum[0], value + half + widest_sum[1])
@@ -127,7 +129,7 @@ def first_order_indices(sample: DesignSample) -> Indices:
 
 
 def _without_effect(y: Floats, part: Replicates) -> Floats:
-    """Return the first-order indices of inputs without effect."""
+    """Return first-order indices of inputs without effect (null distribution)."""
     every = variance(y, part)
     orders = np.random.default_rng(0).random((DUMMIES, len(y))).argsort(axis=1)
     left = [
@@ -139,25 +141,24 @@ def _without_effect(y: Floats, part: Replicates) -> Floats:
 def _shares(
     columns: Mapping[str, Floats], y: Floats, part: Replicates
 ) -> tuple[Floats, Floats, Floats, list[float]]:
-    """Estimate the indices of k inputs, with the variances and covariances of their errors.
+    """Return the indices of k inputs, with the covariance matrix of their errors.
 
     Returns
     -------
     values : ndarray, shape (k,)
     products : ndarray, shape (k, k)
-        Variances and covariances of their errors.
+        Covariance matrix of their errors.
     widest : ndarray, shape (2, k)
-        The change of the lower and of the upper end by one more row as influential as the most
-        influential.
+        Change of the lower and upper end by one more row as influential as the most influential.
     widest_sum : list of float
-        The same change of both ends of the share that no single input explains.
+        The same change for both ends of the share that no single input explains.
     """
     n, every = len(y), variance(y, part)
     squares = np.sum(y**2, axis=1)
     values, influences, noises = [], [], []
     for column in columns.values():
         left = residual_variance(column, y, part)
-        value = 1 - max(left.variance, 0.0) / every  # beside a jump it may be negative
+        value = 1 - max(left.variance, 0.0) / every  # the estimate may be negative near a jump
         influence = (left.squares - (1 - value) * squares) / every
         influence -= influence.mean()
         values.append(value)
@@ -172,7 +173,7 @@ def _shares(
 
 
 def _beyond(left: Residual, influence: Floats, value: float, every: float) -> float:
-    """Return the variance of pairs, less the part of the influence's that smoothing adds."""
+    """Return the error variance from pairs, minus the influence variance added by smoothing."""
     scatter = float(influence @ influence) / (len(influence) - 1)
     excess = min(max(1 - value, 0.0), 1.0) * left.excess / every**2
     return left.noise / every**2 - min(excess, 0.9 * scatter)
@@ -182,7 +183,7 @@ def _estimate(value: float, half: float, widest: Floats) -> Estimate:
     """Return an index with its interval on the scale of log(1 - S1)."""
     if not half > 0:
         return Estimate(value, reason="the rows show no error")
-    # Beyond an error as large as what is left, the scale would send the lower end far away.
+    # If the error exceeds the residual share, the log scale would make the lower end diverge.
     relative = min(half / (1 - value), 1.0) if value < 1 else 1.0
     low = value - half * np.expm1(relative) / relative - widest[0]
     high = value - half * np.expm1(-relative) / relative + widest[1]

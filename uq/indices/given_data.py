@@ -1,12 +1,12 @@
-"""Sensitivity from a plain sample, beside inputs without effect; of quantiles too.
+"""Given-data sensitivity indices from a plain sample, compared with inputs without effect.
 
-RBD-FAST, Borgonovo's delta, PAWN, quantile-oriented indices and regional sensitivity need no design
-of their own (`uq.indices.measures`, `uq.indices.given_data`). Their scatter is not known:
-bootstrap intervals of these estimates cover far less than their nominal level. Each index is
-therefore compared with a null: the same estimate for inputs without effect, which one in twenty of
-them exceeds, and a second one, which the largest of all inputs would exceed once in twenty. An
-index below its null is negligible. An input with many equal values has a null of its own, from its
-values shuffled.
+RBD-FAST, Borgonovo's delta, PAWN, quantile-oriented indices and regional sensitivity need no
+special design (`uq.indices.measures`, `uq.indices.given_data`). Their sampling error cannot be
+estimated: bootstrap intervals cover far less than their nominal level. Each index is therefore
+compared with a null: the 95 % quantile of the same estimate for an input without effect. A second
+limit is the 95 % quantile of the largest estimate over all inputs without effect. An index below
+its null is negligible. An input with many equal values has a separate null from permutations of its
+values.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -22,17 +22,17 @@ from uq.indices.method import DesignSample
 from uq.stats.estimate import Estimate
 
 MIN_ROWS = 64
-"""Fewer rows than this leave too few in each slice of an input."""
+"""Minimum sample size: fewer rows leave too few rows in each slice of an input."""
 
 DUMMIES = 19
-"""One input in twenty without effect exceeds the largest of 19."""
+"""Number of inputs without effect: one in twenty others exceeds the largest of these 19."""
 
 Measure = Callable[[Floats, DesignSample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
-"""Columns of inputs, shape (n, k), and the sample -> raw indices, shape (k,) each, and notes."""
+"""Input columns, shape (n, k), and the sample -> raw indices, shape (k,) each, and notes."""
 
 
 def one_kind(kind: IndexKind, measure: Callable[[Floats, Floats], Floats]) -> Measure:
-    """Return the measure of one kind of index, from columns of inputs and the output."""
+    """Return a `Measure` of one kind of index, from a function of input columns and output."""
     return lambda x, sample: ({kind: measure(x, sample.values)}, ())
 
 
@@ -40,14 +40,15 @@ def beside_nulls(
     measure: Measure,
     correction: Callable[[Floats, Floats], Floats] | None = None,
 ) -> Callable[[DesignSample], Indices]:
-    """Return an estimator of indices that also gives their null, from inputs without effect.
+    """Return an estimator of indices and their null, from inputs without effect.
 
     Parameters
     ----------
     measure : callable
         See `Measure`; NaN for an input whose rows are all in one slice.
     correction : callable, optional
-        ``correction(raw, idle)`` -> indices, from raw ones and those of inputs without effect.
+        ``correction(raw, idle)`` -> corrected indices, from raw indices and the indices of inputs
+        without effect.
 
     Returns
     -------
@@ -84,7 +85,7 @@ def beside_nulls(
 
 
 def null_of(reached: Floats, inputs: int) -> Null:
-    """Return the limits for one input without effect, and for the largest of several."""
+    """Return the null limits for one input without effect, and for the largest of several."""
     return Null(float(reached.max()), _largest_of(inputs, reached) if inputs > 1 else np.nan)
 
 
@@ -95,14 +96,14 @@ def _largest_of(inputs: int, idle: Floats) -> float:
     ----------
     inputs : int
     idle : ndarray, shape (k,)
-        Index of each of some inputs without effect.
+        Indices of k inputs without effect.
 
     Returns
     -------
     float
-        By Gumbel's law of the same mean and variance, whose tail is heavier than that of any of
-        these indices: one or more of 3 to 60 inputs without effect exceeded it in 0.5 to 7 % of
-        samples.
+        Quantile of Gumbel's law of the same mean and variance. Its tail is heavier than the tail of
+        any of these indices: one or more of 3 to 60 inputs without effect exceeded the limit in 0.5
+        to 7 % of samples.
     """
     scale = float(idle.std(ddof=1)) * np.sqrt(6) / np.pi
     quantile = -np.log(-np.log(0.95 ** (1 / inputs)))
@@ -111,7 +112,7 @@ def _largest_of(inputs: int, idle: Floats) -> float:
 
 
 def _no_slices(names: Sequence[str], raw: Mapping[IndexKind, Floats]) -> list[str]:
-    """Return a note on each input whose rows are all in one slice; refuse if all inputs are so."""
+    """Return a note on each input with a single slice; raise `RefusedError` if no other is left."""
     reasons = [
         f"{name} has too few rows of any value but one: no {' or '.join(lost)}"
         for i, name in enumerate(names)
@@ -123,7 +124,7 @@ def _no_slices(names: Sequence[str], raw: Mapping[IndexKind, Floats]) -> list[st
 
 
 def _shuffled_note(name: str, null_values: Mapping[IndexKind, Floats]) -> str:
-    """Return a note on the indices of an input with many equal values after shuffling."""
+    """Return a note on the permutation null of an input with many equal values."""
     maxima = {
         kind.key: values.max() for kind, values in null_values.items() if np.isfinite(values).all()
     }
@@ -143,32 +144,32 @@ _ROWS_BEYOND = 5
 def quantile_indices(
     x: Floats, sample: DesignSample
 ) -> tuple[dict[IndexKind, Floats], tuple[str, ...]]:
-    """Estimate the index of each input for each quantile.
+    """Estimate the quantile-oriented index of each input for each quantile.
 
-    With psi(r) = r (p - [r < 0]), whose mean E psi(Y - q) is least at the quantile q of Y, the
-    index is 1 - E[min_q E[psi(Y - q) | X]] / min_q E[psi(Y - q)] [1]_: 0 if knowing X does not
-    sharpen the quantile at all, 1 if it determines it.
+    Let psi(r) = r (p - [r < 0]); its mean E psi(Y - q) is minimal at the quantile q of Y. The index
+    is 1 - E[min_q E[psi(Y - q) | X]] / min_q E[psi(Y - q)] [1]_. It is 0 if X carries no
+    information on the quantile, and 1 if X determines Y.
 
     Parameters
     ----------
     x : ndarray, shape (n, d)
     sample : DesignSample
-        The output, and the quantiles.
+        Sample with the output and the quantiles.
 
     Returns
     -------
     indices : dict
-        IndexKind -> raw indices, shape (d,), from slices of equally many rows, or by value where an
-        input has few values. They are biased upwards, since a quantile is fitted to each slice:
-        those of inputs without effect show by how much. NaN where an input varies within one slice
-        only.
+        IndexKind -> raw indices, shape (d,), from slices with equal numbers of rows, or by value
+        if an input has few values. They are biased upwards, since a quantile is fitted to each
+        slice; the indices of inputs without effect estimate this bias. NaN if an input varies only
+        within one slice.
     notes : tuple of str
-        Why some quantiles have none.
+        Reasons why quantiles have no index.
 
     Raises
     ------
     RefusedError
-        None has any.
+        No quantile has an index.
 
     References
     ----------
@@ -195,10 +196,10 @@ def quantile_indices(
 
 
 def without_optimism(raw: Floats, idle: Floats) -> Floats:
-    """Correct raw indices by those of inputs without effect.
+    """Return indices corrected for the optimism of fitting, from inputs without effect.
 
-    Fitting each slice lowers what remains by the same factor for every input: exactly, where the
-    law of the output differs between slices in location and scale alone.
+    Fitting each slice reduces the remaining contrast by the same factor for every input. This is
+    exact if the law of the output differs between slices only in location and scale.
     """
     return 1 - (1 - raw) / (1 - idle.mean())
 
@@ -209,6 +210,6 @@ def _least_contrast(y: Floats, p: float) -> float:
 
 
 def _remains(y: Floats, p: float, number: NDArray[np.intp]) -> float:
-    """Return the mean of the least contrasts in slices of y; `number` is each row's slice."""
+    """Return the mean of the minimum contrasts over slices of y; `number` is each row's slice."""
     parts = (y[number == k] for k in range(number.max() + 1))
     return sum(_least_contrast(part, p) * len(part) for part in parts) / len(y)

@@ -1,9 +1,9 @@
-"""Intervals of methods whose rows come in groups, and Morris' elementary effects.
+"""Confidence intervals of methods with grouped rows, and Morris' elementary effects.
 
-A replicate with three hits of an event, or three rows of the regime that scatters, does not show
-the scatter of the next three, and eight such replicates may agree by chance. Where few rows count,
-intervals are therefore widened; docs/statistics.md states what they cover with and without it, and
-`benchmarks/coverage/few.py` counts the widened ones.
+If each replicate has only about three hits of an event, or three rows of the regime that
+scatters, the variance cannot be estimated reliably: eight such replicates may agree by chance.
+Intervals that rest on few rows are therefore widened. docs/statistics.md reports the coverage with
+and without the widening, and `benchmarks/coverage/few.py` counts the widened intervals.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -27,8 +27,9 @@ from uq.stats.intervals import (
 from uq.stats.quantile_functions import student
 
 ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
-"""Where the variance rests on fewer rows of each replicate, and on less than this share of them,
-intervals are widened. Of a normal law it rests on a third of the rows."""
+"""Intervals are widened if the effective number of rows behind the variance is below the first
+limit in each replicate, and below the second limit as a share of the rows. This share is one third
+for a normal law."""
 
 Values = Mapping[IndexKind, Mapping[str, float]]
 """Kind of index -> input -> value."""
@@ -42,27 +43,27 @@ def pooled_with_intervals(
     lacking: str = "",
     confidence: float = CONFIDENCE,
 ) -> tuple[dict[IndexKind, dict[str, Estimate]], tuple[str, ...]]:
-    """Estimate from all groups together, with intervals from the same estimate by replicates.
+    """Return pooled estimates of all groups, with intervals from the scatter between replicates.
 
     Parameters
     ----------
     estimate : callable
-        Whole groups, along the first axis -> indices.
+        Complete groups, along the first axis -> indices.
     pooled : ndarray
-        All whole groups.
+        All complete groups.
     replicates : sequence of ndarray
         Groups of each replicate.
     noun : str
         Name of the indices in messages.
     lacking : str
-        Why single replicates give no estimates, or "".
+        Reason why single replicates give no estimates, or "".
     confidence : float, optional
 
     Returns
     -------
     indices : dict
     notes : tuple of str
-        Why there are no intervals.
+        Reasons for missing intervals.
     """
     notes: tuple[str, ...] = ()
     if len(replicates) == 1:
@@ -85,7 +86,7 @@ def pooled_with_intervals(
 def with_difference(
     estimate: Callable[[Floats], Values], pair: tuple[str, str] | None
 ) -> Callable[[Floats], Values]:
-    """Return an estimate that also gives the difference between the indices of two inputs."""
+    """Return an estimator that also gives the difference between the indices of two inputs."""
     if pair is None:
         return estimate
     first, second = pair
@@ -102,17 +103,17 @@ def with_difference(
 
 
 def effective_rows(deviations: Floats) -> float:
-    """Return the number of rows that a variance rests on.
+    """Return the effective number of rows behind a variance.
 
     Parameters
     ----------
     deviations : ndarray, shape (n,) or (n, e)
-        From the mean, of each element.
+        Deviations of each element from its mean.
 
     Returns
     -------
     float
-        n over the kurtosis: n/3 for a normal law, about the number of hits for a rare event.
+        n divided by the kurtosis: n/3 for a normal law, about the number of hits for a rare event.
     """
     squares = _squares(deviations)
     return float(squares.sum() ** 2 / (squares**2).sum())
@@ -121,20 +122,20 @@ def effective_rows(deviations: Floats) -> float:
 def one_more_row(
     deviations: Floats, groups: int, replicates: int, confidence: float = CONFIDENCE
 ) -> float:
-    """Return the half-width that one more row, as extreme as the most extreme, adds to an interval.
+    """Return the half-width to add for one more row as extreme as the most extreme.
 
     Parameters
     ----------
     deviations : ndarray, shape (n,) or (n, e)
-        Of the independent rows from their mean, of variance 1, all elements together.
+        Deviations of the independent rows from their mean, scaled to variance 1 over all elements.
     groups, replicates : int
-        All groups of all replicates.
+        Number of groups in all replicates, and number of replicates.
     confidence : float, optional
 
     Returns
     -------
     float
-        A half-width; zero where the variance rests on enough rows, or on a common share of them.
+        Half-width; zero if the variance rests on enough rows, or on a sufficient share of them.
     """
     enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
     if replicates < 2 or effective_rows(deviations) >= enough:
@@ -149,14 +150,14 @@ def _squares(deviations: Floats) -> Floats:
 
 
 def widened(estimate: Estimate, by: float) -> Estimate:
-    """Return an estimate whose half-widths are sqrt(half^2 + by^2)."""
+    """Return the estimate with half-widths increased to sqrt(half^2 + by^2)."""
     value = estimate.value
     below, above = (np.hypot(end - value, by) for end in (estimate.low, estimate.high))
     return replace(estimate, low=float(value - below), high=float(value + above))
 
 
 MIN_TRAJECTORIES = 4
-"""Fewer trajectories than this do not give a useful mean."""
+"""Minimum number of trajectories for a useful mean."""
 
 MU = IndexKind("mu", "mean effect (mu)", "output")
 SIGMA = IndexKind("sigma", "scatter of effects (sigma)", "output")
@@ -164,30 +165,30 @@ MU_STAR = IndexKind("mu_star", "mean magnitude of effects (mu*)", "output")
 
 
 def morris_indices(sample: DesignSample) -> Indices:
-    """Estimate mean, mean magnitude and standard deviation of the elementary effects.
+    """Estimate mean, mean magnitude and standard deviation of Morris' elementary effects.
 
     Parameters
     ----------
     sample : DesignSample
-        Of trajectories.
+        Sample of trajectories.
 
     Returns
     -------
     Indices
-        ``mu``, ``sigma`` and ``mu_star``, in the output's unit, scaled to a change of the input
-        over the whole range of its law. Pooled over all trajectories, with intervals from the
-        scatter between replicates.
+        ``mu``, ``sigma`` and ``mu_star``, in the unit of the output, scaled to a change of the
+        input over the full range of its law. They are pooled over all trajectories, with intervals
+        from the scatter between replicates.
 
     Raises
     ------
     RefusedError
-        A constant output.
+        The output is constant.
 
     Notes
     -----
-    Trajectories chosen far apart favour the corners. Their intervals are those of the average over
-    such trajectories, which differs from the mean over all trajectories by tens of per cent; the
-    note of the design states this.
+    Trajectories selected for large distances favour the corners. Their intervals cover the average
+    over selected trajectories, which differs from the mean over all trajectories by tens of per
+    cent; the note of the design states this.
 
     References
     ----------
@@ -197,7 +198,7 @@ def morris_indices(sample: DesignSample) -> Indices:
     (y, unit), whole = sized(sample.grouped), sample.whole  # squares neither overflow nor vanish
     if is_constant(y[whole]):
         raise RefusedError(NO_EFFECT)
-    # A step within one of several discrete values changes no input, and has no effect.
+    # A step within one discrete value changes no input, and has no effect.
     effects = np.einsum("rns,rnsp->rnp", np.diff(y, axis=2), sample.direction) / STEP
 
     replicates = [replicate[rows] for replicate, rows in zip(effects, whole, strict=True)]

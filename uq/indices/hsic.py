@@ -1,7 +1,7 @@
-"""Kernel measures of dependence (HSIC): of an event, and of an output given an event.
+"""Kernel dependence measures (HSIC): target HSIC of an event, conditional HSIC given an event.
 
-The Hilbert-Schmidt independence criterion (HSIC) is zero only if an input and what it is compared
-with are independent. It is computed by OpenTURNS, which is imported when it is first used.
+The Hilbert-Schmidt independence criterion (HSIC) of an input and an output is zero only if they are
+independent. It is computed by OpenTURNS, which is imported on first use.
 """
 
 from dataclasses import replace
@@ -21,30 +21,31 @@ HSIC = IndexKind("hsic", "HSIC, normalised")
 P = IndexKind("p", "p-value of independence", "p-value")
 
 MOST_ROWS = 2000
-"""Time and memory grow with the square of the rows."""
+"""Largest number of rows: time and memory grow with its square."""
 
 
 def target_indices(sample: DesignSample) -> Indices:
-    """Estimate how much each input decides whether an event happens.
+    """Estimate the target HSIC of each input for an event, with its p-value.
 
     Parameters
     ----------
     sample : DesignSample
-        Plain; an event, 0 or 1.
+        Plain sample of an event, 0 or 1.
 
     Returns
     -------
     Indices
-        ``p``, the probability of so large a dependence of an input without effect, by a gamma law
-        [2]_, each input by itself; and ``hsic``, between input and event, over the root of the
-        products of each with itself [1]_: 0 if they are independent, at most 1. It is that of
-        ranks, with Gaussian kernels as wide as their standard deviation; of an input with few
-        values, that of a kernel that tells whether two are equal, whatever they are called.
+        ``p``, the p-value of the independence test of each input, by a gamma approximation [2]_;
+        and ``hsic``, the normalised HSIC of input and event [1]_: 0 if they are independent, at
+        most 1. It is computed from ranks, with Gaussian kernels of one standard deviation in width.
+        For an input with few values the kernel only compares values for equality, so that their
+        labels do not matter.
 
     Raises
     ------
     RefusedError
-        Not an event, too few rows on one side of it, or OpenTURNS is not installed.
+        The output is not an event, too few rows are on one side of it, or OpenTURNS is not
+        installed.
 
     References
     ----------
@@ -59,17 +60,17 @@ def target_indices(sample: DesignSample) -> Indices:
 
 
 def conditional_indices(sample: DesignSample) -> Indices:
-    """Estimate how much each input matters for an output among the rows in which an event happens.
+    """Estimate the conditional HSIC of each input: its HSIC among the rows with an event.
 
     Parameters
     ----------
     sample : DesignSample
-        Plain; the output in these rows.
+        Plain sample of the output in these rows.
 
     Returns
     -------
     Indices
-        As `target_indices`, between input and output, both by their ranks among these rows.
+        As in `target_indices`, between input and output, both by their ranks among these rows.
 
     Raises
     ------
@@ -89,7 +90,7 @@ def _indices(sample: DesignSample) -> Indices:
 
 
 def _normalised(x: Floats, y: Floats) -> Floats:
-    """Return the normalised HSIC of each column of inputs; NaN for a constant one."""
+    """Return the normalised HSIC of each input column; NaN for a constant column."""
     return np.array(
         [
             _estimator(column, y).getR2HSICIndices()[0] if np.ptp(column) else np.nan
@@ -105,8 +106,9 @@ def _p_value(x: Floats, y: Floats) -> float:
 def _estimator(x: Floats, y: Floats) -> Any:
     """Return OpenTURNS' estimator for one input.
 
-    Of an event it is that of target sensitivity, whose filter is the event itself; given an event,
-    that of conditional sensitivity with weights 0 and 1 is the global one of the rows of weight 1.
+    For an event it is the estimator of target sensitivity, with the event itself as filter. Given
+    an event, conditional sensitivity with weights 0 and 1 equals global sensitivity of the rows of
+    weight 1.
     """
     try:
         import openturns as ot

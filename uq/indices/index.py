@@ -1,4 +1,4 @@
-"""The results of a sensitivity method: kinds of indices, each an estimate for every input."""
+"""Results of a sensitivity method: kinds of indices, with an estimate for every input."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,19 +10,19 @@ from uq.stats.estimate import NOTHING, Estimate
 
 @dataclass(frozen=True)
 class IndexKind:
-    """One kind of index.
+    """A kind of sensitivity index.
 
     Attributes
     ----------
     key : str
-        Its name in tables and JSON.
+        Name in tables and JSON.
     words : str
-        What the legend of a figure calls it.
+        Name in the legend of a figure.
     unit : {"variance", "1", "output", "p-value"}
-        A share of the variance, another number without a unit, a number in the output's unit, or a
-        probability that is no size of an effect.
+        A share of the variance, another dimensionless number, a number in the output's unit, or a
+        p-value, which does not measure the size of an effect.
     of_pairs : bool
-        Whether it belongs to pairs of inputs, named ``"first,second"``.
+        Whether the index belongs to pairs of inputs, named ``"first,second"``.
     """
 
     key: str
@@ -31,17 +31,17 @@ class IndexKind:
     of_pairs: bool = False
 
     def text(self, value: float) -> str:
-        """Return a value for a table: to three decimals, or digits in the unit of the output."""
+        """Return a value as text for a table: three decimals, or digits in the output's unit."""
         if not isfinite(value):
             return "-"
         if self.unit == "output":
             return f"{value:.3g}"
         if self.unit == "p-value" and value < 0.001:
             return "< 0.001"
-        return f"{round(value, 3) + 0.0:.3f}"  # no minus sign before what is zero
+        return f"{round(value, 3) + 0.0:.3f}"  # no minus sign before zero
 
     def interval(self, estimate: Estimate) -> str:
-        """Return the ends of an interval for a table; nothing where there is none."""
+        """Return the ends of an interval as text for a table; "" if it is missing."""
         ends = [self.text(end) for end in (estimate.low, estimate.high)]
         return "" if ends == ["-", "-"] else " to ".join(ends)
 
@@ -54,12 +54,12 @@ SHAPLEY = IndexKind("shapley", "Shapley effect", "variance")
 
 @dataclass(frozen=True)
 class Null:
-    """Limits of the index of inputs without effect, by the same estimator.
+    """Null limits: quantiles of the same estimator for inputs without effect.
 
     Attributes
     ----------
     limit : float
-        The index of a single input without effect exceeds it with probability `exceeded`.
+        Limit that the index of a single input without effect exceeds with probability `exceeded`.
     largest : float
         Upper 95 % limit of the largest index if no input has an effect; NaN if not estimated.
     exceeded : float
@@ -73,31 +73,30 @@ class Null:
 
 @dataclass(frozen=True)
 class Indices:
-    """All indices of one output.
+    """All sensitivity indices of one output.
 
     Attributes
     ----------
     values : dict of IndexKind to dict
-        Input (``"first,second"`` for a pair) -> Estimate; the kind that inputs are ranked by last
-        of those that are not of pairs.
+        Input (``"first,second"`` for a pair) -> Estimate. Of the kinds that are not of pairs, the
+        last one ranks the inputs.
     notes : tuple of str
-        Sentences on what is missing, and why.
+        Sentences on missing numbers, and the reasons.
     nulls : dict of IndexKind to Null
-        Where the method has no intervals.
+        Null limits, if the method has no intervals.
     noise : Estimate or None
-        Share of the variance that remains once all inputs are known, where the rows determine it.
+        Share of the variance that remains given all inputs, if the rows determine it.
     by_correlation : tuple of str
-        Inputs that have an index but no effect of their own: it is that of inputs they are
-        correlated with.
+        Inputs whose index is due only to correlated inputs: they have no effect of their own.
     half_products : dict of (str, str) to float
-        Covariance of the errors of the indices of two inputs, the second not listed before the
-        first, times the square of the quantile that makes their 95 % intervals: of one input the
-        square of its half-width. Where one set of rows gives all indices.
+        Covariance of the errors of the indices of two inputs, times the square of the quantile of
+        their 95 % intervals; for one input it is the square of its half-width. The second input is
+        not listed before the first. Present if one set of rows gives all indices.
     rows_factors : dict of str to float
-        Input whose index lacks an interval -> how many times the rows would give one.
+        Input whose index lacks an interval -> factor of the sample size that would give one.
     unexplained : Estimate
-        Of first-order indices, the share of the variance that no single input explains, if its
-        error is known.
+        For first-order indices: share of the variance that no single input explains, if its error
+        can be estimated.
     """
 
     values: Mapping[IndexKind, Mapping[str, Estimate]]
@@ -111,18 +110,18 @@ class Indices:
 
 
 BY_CORRELATION = "by correlation alone"
-"""Label beside the index of an input whose share is due to correlation alone."""
+"""Label of an index that is due to correlation alone."""
 
 
 class RefusedError(Exception):
-    """An output has no indices.
+    """Raised if the indices of an output cannot be estimated.
 
     Parameters
     ----------
     why : str
-        A sentence.
+        Reason, as a sentence.
     rows_factor : float
-        How many times the rows would give indices; NaN where that is not known.
+        Factor of the sample size that would give indices; NaN if unknown.
     """
 
     def __init__(self, why: str, rows_factor: float = nan):
@@ -131,4 +130,4 @@ class RefusedError(Exception):
 
 
 ALL_NOISE = "no input changes it at one seed: all of its variance is noise"
-"""Why an output of a random model has no shares if the compared rows share a seed."""
+"""Reason why an output of a random model has no shares if compared rows share a seed."""

@@ -1,4 +1,4 @@
-"""Measures of how an output follows each input, from the rows of a plain sample alone."""
+"""Given-data sensitivity measures: random balance, correlation ratio, delta, PAWN, KS distance."""
 
 from collections.abc import Callable
 
@@ -12,42 +12,43 @@ from uq.stats.quantile_functions import normal
 from uq.text.numbers import counted
 
 LEAST_ROWS = 10
-"""A value of an input with fewer rows than this has no slice of its own."""
+"""Fewest rows of a value of an input that forms its own slice."""
 
 MOST_CATEGORIES = 10
-"""An input with no more values than this is sliced by value."""
+"""Largest number of values of an input that is sliced by value."""
 
 MANY_EQUAL = 0.05
-"""An input has many equal values if one of them has a larger share of the rows than this."""
+"""Share of the rows with one value above which an input has many equal values."""
 
 
 def has_many_equal(column: Floats) -> bool:
-    """Return whether one value of an input has a large share of the rows."""
+    """Return whether one value of an input occurs in a large share of the rows."""
     return is_repeated(np.sort(column))
 
 
 def is_repeated(ascending: Floats) -> bool:
-    """Return whether one of these ascending values has a large share of them."""
+    """Return whether one value occurs in a large share of these ascending values."""
     most = int(max(MANY_EQUAL * len(ascending), 1))
     return bool((ascending[most:] == ascending[:-most]).any())  # a value more than `most` times
 
 
 def slice_of(column: Floats, cuts: NDArray[np.intp], least: int = LEAST_ROWS) -> NDArray[np.intp]:
-    """Divide the rows into slices of an input; rows of the same value are in the same slice.
+    """Return the slice of each row along an input; rows of the same value share a slice.
 
     Parameters
     ----------
     column : ndarray, shape (n,)
     cuts : ndarray of int, shape (k - 1,)
-        Where k slices would begin among the sorted rows if all values differed.
+        Positions among the sorted rows at which k slices begin if all values differ.
     least : int, optional
-        Rows of a slice by value.
+        Fewest rows of a slice by value.
 
     Returns
     -------
     ndarray of int, shape (n,)
-        Number of each row's slice. Few values have a slice each, whatever they are called, and
-        rare ones share a slice. Among many values, the cuts move to where a value ends.
+        Number of each row's slice. If there are few values, each value has a slice, independent of
+        its label, and rare values share a slice. If there are many values, the cuts move to the
+        ends of ties.
     """
     values, place, counts = np.unique(column, return_inverse=True, return_counts=True)
     if len(values) <= max(MOST_CATEGORIES, len(cuts) + 1):
@@ -60,7 +61,7 @@ def slice_of(column: Floats, cuts: NDArray[np.intp], least: int = LEAST_ROWS) ->
 
 
 def _categories(counts: NDArray[np.intp], least: int) -> NDArray[np.intp]:
-    """Return the number of each value's slice: one each, and one of all rare values."""
+    """Return the slice of each value: one slice per value, and one for all rare values."""
     order = np.argsort(counts, kind="stable")
     rare = int((counts < least).sum())
     if rare:  # enough of them, with the next more frequent ones, to make a slice
@@ -78,7 +79,7 @@ def by_slices(
 ) -> Floats:
     """Return ``measure(number of each row's slice)`` of each input, shape (d,).
 
-    NaN where an input varies within one slice only; see `slice_of`.
+    NaN if an input varies only within one slice; see `slice_of`.
     """
     numbers = [slice_of(column, cuts, least) for column in x.T]
     return np.array(
@@ -90,12 +91,12 @@ def by_slices(
 
 
 def even_cuts(rows: int, slices: int) -> NDArray[np.intp]:
-    """Return where slices of equally many rows begin, except the first."""
+    """Return the start positions of slices with equal numbers of rows, except the first."""
     return np.linspace(0, rows, slices + 1)[1:-1].astype(np.intp)
 
 
 MIN_SIDE = 10
-"""With fewer rows than this with the event, or without it, distributions are not compared."""
+"""Fewest rows with the event, and without it, for a comparison of distributions."""
 
 _HARMONICS = 10
 _VALUE_SLICES = 20
@@ -105,7 +106,7 @@ _TIED_OUTPUT = 0.01  # share of the rows with one value
 
 
 def first_order(x: Floats, y: Floats) -> Floats:
-    """Return the share of the variance of y that each input explains alone, unbiased.
+    """Return unbiased first-order indices: the share of the variance that each input explains.
 
     Parameters
     ----------
@@ -116,8 +117,9 @@ def first_order(x: Floats, y: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (d,)
-        By random balance; of an input with many equal values, whose rows have no order, by the
-        means at each value. NaN where such an input varies within one slice only.
+        Random balance estimates. For an input with many equal values, whose rows have no order,
+        the correlation ratio from the means at each value. NaN if such an input varies only within
+        one slice.
     """
     total = y.var(axis=0).sum()
 
@@ -131,14 +133,15 @@ def first_order(x: Floats, y: Floats) -> Floats:
 
 
 def _random_balance(order: NDArray[np.intp], y: Floats, total: float) -> float:
-    """Return the share of the first harmonics in the power of y along an input and back.
+    """Return the bias-corrected first-order index by random balance.
 
-    The rows have this `order` along the input.
+    It is the share of the first harmonics in the spectrum of y along the input and back. `order` is
+    the order of the rows along the input.
 
     References
     ----------
     E. Plischke, "An effective algorithm for computing global sensitivity indices (EASI)", Reliab.
-    Eng. Syst. Saf. 95, 354-360 (2010). Less the share that noise has in so many harmonics: J.-Y.
+    Eng. Syst. Saf. 95, 354-360 (2010). Bias correction for noise in these harmonics: J.-Y.
     Tissot, C. Prieur, "Bias correction for the estimation of sensitivity indices based on random
     balance designs", Reliab. Eng. Syst. Saf. 107, 205-213 (2012).
     """
@@ -170,7 +173,7 @@ def _correlation_ratio(column: Floats, y: Floats, total: float) -> float:
 
 
 def delta(x: Floats, y: Floats) -> Floats:
-    """Estimate Borgonovo's delta: the mean area between the density in a slice and anywhere.
+    """Estimate Borgonovo's delta: half the mean area between conditional and marginal density.
 
     Parameters
     ----------
@@ -180,14 +183,14 @@ def delta(x: Floats, y: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (d,)
-        The estimate of eq. 26 in [1]_, of normal scores of `y`: delta is the same for any
-        increasing function of `y`, but its estimate is useless where one grid must serve a long
-        tail, and normal scores have none. NaN where an input varies within one slice only.
+        Estimate of eq. 26 in [1]_, from normal scores of `y`. Delta is invariant under increasing
+        functions of `y`, but its estimate fails for long tails, which a single grid cannot resolve;
+        normal scores have no long tails. NaN if an input varies only within one slice.
 
     Raises
     ------
     RefusedError
-        When many rows share one value, which has no density.
+        Many rows share one value, which has no density.
 
     References
     ----------
@@ -203,7 +206,7 @@ def delta(x: Floats, y: Floats) -> Floats:
     scores = normal((scipy.stats.rankdata(y) - 0.5) / n)
     grid = np.linspace(scores.min(), scores.max(), _GRID)
     anywhere = _density(scores, grid)
-    # As many as SALib's: section 5 of the paper.
+    # The same number of slices as in SALib: section 5 of the paper.
     slices = min(int(np.ceil(n ** (2 / (7 + np.tanh((1500 - n) / 500))))), 48)
 
     def area(number: NDArray[np.intp]) -> float:
@@ -215,14 +218,14 @@ def delta(x: Floats, y: Floats) -> Floats:
 
 
 def _density(values: Floats, grid: Floats) -> Floats:
-    """Return scipy's ``gaussian_kde`` with Silverman's width, in a third of its time."""
+    """Return a Gaussian kernel density with Silverman's width, three times as fast as scipy's."""
     width = values.std(ddof=1) * (0.75 * len(values)) ** -0.2
     kernels = np.exp(-0.5 * ((grid[:, None] - values) / width) ** 2)
     return np.asarray(kernels.mean(axis=1) / (width * np.sqrt(2 * np.pi)))
 
 
 def pawn(x: Floats, y: Floats) -> Floats:
-    """Estimate PAWN's index: the median distance between the law in a slice and anywhere.
+    """Estimate the PAWN index: the median KS distance of conditional and marginal distribution.
 
     Parameters
     ----------
@@ -232,9 +235,9 @@ def pawn(x: Floats, y: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (d,)
-        The distance is that of Kolmogorov, the slices are ten between quantiles of the input [1]_,
-        or one for each of its values where they are few. NaN where an input varies within one
-        slice only.
+        Median Kolmogorov-Smirnov distance over ten slices between quantiles of the input [1]_, or
+        over one slice per value if there are few values. NaN if an input varies only within one
+        slice.
 
     References
     ----------
@@ -242,9 +245,9 @@ def pawn(x: Floats, y: Floats) -> Floats:
        input-output sample", Environ. Model. Softw. 108, 197-207 (2018).
     """
     order = np.argsort(y, kind="stable")
-    last = np.append(np.diff(y[order]) > 0, True)  # the law is known only where y grows
+    last = np.append(np.diff(y[order]) > 0, True)  # F is defined at the last of equal y
     anywhere = np.flatnonzero(last)[:, None] / len(y) + 1 / len(y)
-    # Rows from one quantile up to the next.
+    # Slices: rows from one quantile up to the next.
     cuts = -(-np.arange(1, _PAWN_SLICES) * (len(y) - 1) // _PAWN_SLICES)
 
     def distance(number: NDArray[np.intp]) -> float:
@@ -255,7 +258,7 @@ def pawn(x: Floats, y: Floats) -> Floats:
 
 
 def ks_distances(x: Floats, event: Floats) -> Floats:
-    """Measure how differently each input is distributed with an event and without it.
+    """Return the Kolmogorov-Smirnov distance of each input between rows with and without an event.
 
     Parameters
     ----------
@@ -266,14 +269,14 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (d,)
-        The distance of Kolmogorov and Smirnov [1]_; of an input with few values the largest over
-        all orders of them, which is the distance in total variation and does not depend on what
-        the values are called. Inputs without effect also have a positive distance.
+        Kolmogorov-Smirnov distance (regional sensitivity analysis) [1]_. For an input with few
+        values it is the maximum over all orders of the values: the total variation distance, which
+        does not depend on their labels. Inputs without effect also have a positive distance.
 
     Raises
     ------
     RefusedError
-        Not an event, or too few rows on a side.
+        The output is not an event, or too few rows are on one side.
 
     References
     ----------
@@ -285,7 +288,7 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
 
 
 def as_event(values: Floats) -> Mask:
-    """Return where an event happens, from 0 and 1; refuse other numbers, and few on one side."""
+    """Return the mask of an event from 0 and 1; reject other numbers, and few rows on one side."""
     happens = values == 1
     if not (happens | (values == 0)).all():
         raise RefusedError(

@@ -1,4 +1,4 @@
-"""A sensitivity method: the data it takes, the rows it needs, and its estimate."""
+"""Sensitivity methods: the data of a method, its required rows, and its estimates."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -17,41 +17,42 @@ from uq.text.numbers import counted
 
 @dataclass(frozen=True)
 class DesignSample:
-    """The rows of a result and one number for each, or one for each element of an output.
+    """Rows of a result for a sensitivity method: inputs, output and grouping by the design.
 
     Attributes
     ----------
     values : ndarray, shape (n,) or (n, e)
-        The output, NaN where a row has none; of a whole output, a column for each element.
+        Output of each row, NaN if missing; with a column for each element of an output.
     inputs : dict of str to ndarray, shape (n,)
-        The inputs that vary by a law of their own.
+        Inputs that vary by their own law.
     groups : ndarray of int, shape (R, N, k)
-        The rows of each replicate and group; of a plain sample each row is a group.
+        Rows of each replicate and group; in a plain sample each row is a group.
     blocks : tuple of str
-        What the design calls the rows of a group, or, where the rows of a block are a group, the
-        groups.
+        Labels of the rows of a group in the design, or labels of the groups if the rows of a block
+        form a group.
     direction : ndarray, shape (R, N, k - 1, d)
-        Where inputs change one at a time: whether a step (third axis) raises an input (last axis),
-        1, lowers it, -1, or neither, 0, in probability. Empty elsewhere.
+        For designs that change one input at a time: 1 if a step (third axis) increases the
+        probability of an input (last axis), -1 if it decreases it, otherwise 0. Empty for other
+        designs.
     correlated : dict of str to tuple of str
-        Input -> those it is correlated with, where the study states rank correlations.
+        Input -> correlated inputs, if the study states rank correlations.
     scores : ndarray, shape (R, N, k, d)
-        Of paths, the normal scores of the inputs: their probabilities on the scale of a standard
-        normal law. NaN for discrete inputs, and for what is correlated with one.
+        For paths, the normal scores of the inputs: standard normal quantiles of their
+        probabilities. NaN for discrete inputs, and for inputs correlated with a discrete one.
     matrix : ndarray, shape (d, d)
-        The correlations of normal scores.
+        Correlation matrix of the normal scores.
     random : bool
         Whether the model's rows depend on their seeds.
     quantiles : dict of str to float
-        Name -> probability of each quantile that indices of quantiles are about.
+        Name -> probability of each quantile, for quantile-oriented indices.
     confidence : float
-        Of intervals.
+        Confidence level of the intervals.
     nulls : bool
-        Whether indices of inputs without effect are wanted for comparison.
+        Whether to estimate indices of inputs without effect for comparison.
     replicate : ndarray of int, shape (n,), optional
-        Of a plain sample, the replicate of each row; None where rows are independent.
+        Replicate of each row of a plain sample; None if rows are independent.
     difference : tuple of str, optional
-        Two inputs, the difference of whose indices is estimated, too: label ``"x1 - x2"``.
+        Two inputs; the difference of their indices is also estimated, with label ``"x1 - x2"``.
     """
 
     values: Floats
@@ -71,17 +72,17 @@ class DesignSample:
 
     @classmethod
     def plain(cls, values: Floats, inputs: Mapping[str, Floats], **more: Any) -> Self:
-        """Return a sample without groups; `more` are other fields of it."""
+        """Return a sample without groups; `more` are other fields."""
         return cls(values, inputs, alone(len(values)), **more)
 
     @property
     def grouped(self) -> Floats:
-        """The output by replicate, group and row, shape (R, N, k), with (e,) of a whole output."""
+        """The output by replicate, group and row, shape (R, N, k) or (R, N, k, e)."""
         return self.values[self.groups]
 
     @cached_property
     def whole(self) -> Mask:
-        """Mask of groups with a value in each of their rows, shape (R, N)."""
+        """Mask of complete groups, which have a value in every row, shape (R, N)."""
         finite = np.isfinite(self.grouped)
         return np.asarray(finite.all(axis=tuple(range(2, finite.ndim))))
 
@@ -116,48 +117,50 @@ UNSEEN = (
 
 @dataclass(frozen=True)
 class SensitivityMethod:
-    """One way to find which inputs matter.
+    """A sensitivity method: its estimator and its requirements.
 
     Attributes
     ----------
     question : str
-        What it answers, in one line.
+        One-line question that the method answers.
     layout : Layout
-        How the rows of a design must belong together for it.
+        Required grouping of the rows of a design.
     estimate : callable
-        ``estimate(sample)`` -> `Indices`, or `RefusedError`. Groups with a row without a value are
-        left out by it (`DesignSample.whole`); every row of a plain sample has a value.
+        ``estimate(sample)`` -> `Indices`, or `RefusedError`. It skips groups with a missing value
+        (`DesignSample.whole`); every row of a plain sample has a value.
     kinds : tuple of IndexKind
-        What it estimates; none where that depends on the study.
+        Estimated kinds of indices; empty if they depend on the study.
     gives : str
-        The same in words.
+        Description of the estimated indices.
     source : str
-        Whose estimator it is.
+        Source of the estimator.
     intervals : str
-        What its intervals come from; "" where it has none.
+        Source of the intervals; "" if there are none.
     has_null : bool
         Whether its indices come with the null of inputs without effect.
     least : int
-        Fewer whole groups give no indices.
+        Minimum number of complete groups.
     most_rows : int or None
-        Of a larger plain sample this many rows are chosen: all would take too long.
+        Number of rows selected from a larger plain sample, to limit the run time.
     assumes_independence : bool
-        Whether the inputs must be independent of each other. If not, they may depend in any way in
-        a plain sample, and as the study states in the rows of a design.
+        Whether the inputs must be independent. If not, inputs of a plain sample may have any
+        dependence, and inputs of a design the dependence that the study states.
     aggregates : bool
-        Whether it also gives one index for all elements of an output: the sum of what an input
-        explains of their variances, over the sum of these variances (Gamboa et al. 2014).
+        Whether it also gives an aggregated index over all elements of an output: the sum of their
+        explained variances divided by the sum of their variances (Gamboa et al. 2014).
     takes_events, takes_numbers : bool
-        Whether it is for events, outputs of 0 or 1, and for other outputs.
+        Whether it applies to events, which are outputs of 0 or 1, and to other outputs.
     conditional : bool
-        Whether it is about an output among the rows in which an event happens, not about the event.
+        Whether it applies to an output among the rows with an event, rather than to the event.
     scale_free : bool
-        Whether it compares distributions: no increasing function of an output changes its indices.
+        Whether its indices are invariant under increasing functions of the output, since it
+        compares distributions.
     noise : str
-        How it treats the noise of a random model where rows share seeds.
+        Treatment of the noise of a random model if rows share seeds.
     pilot : callable or None
-        ``pilot(sample)`` -> kind -> the largest standard deviation, over inputs, of a group's term
-        in the mean that an index is; given where ``uq plan`` and ``uq convergence`` show indices.
+        ``pilot(sample)`` -> kind -> the largest standard deviation, over inputs, of the term of a
+        group in the mean that estimates an index. Present if ``uq plan`` and ``uq convergence``
+        show indices.
     """
 
     question: str
@@ -190,7 +193,7 @@ class SensitivityMethod:
         Parameters
         ----------
         sample : DesignSample
-            Its rows laid out as the method needs them.
+            Rows grouped as the method requires.
 
         Returns
         -------
@@ -199,10 +202,10 @@ class SensitivityMethod:
         Raises
         ------
         RefusedError
-            Too few groups have a value in each row, or the method finds no indices in them.
+            There are too few complete groups, or they do not allow an estimate.
         """
         self.refuse_few_groups(sample)
-        if self.of_variance:  # shares, of whatever unit
+        if self.of_variance:  # shares do not depend on the unit
             sample = replace(sample, values=sized(sample.values)[0])
         if self.layout is not PLAIN:
             return self.estimate(sample)
@@ -211,7 +214,7 @@ class SensitivityMethod:
             raise RefusedError(NO_EFFECT)
         kept = len(rows)
         if self.most_rows is not None and kept > self.most_rows:
-            # At random: imported rows may come in a meaningful order.
+            # Random selection: imported rows may have a meaningful order.
             rows = np.sort(np.random.default_rng(0).choice(rows, self.most_rows, replace=False))
             note = (
                 f"from {self.most_rows} of {kept} rows, chosen at random: all would take too long"
@@ -220,7 +223,7 @@ class SensitivityMethod:
         return replace(indices, notes=(note, *indices.notes) if note else indices.notes)
 
     def refuse_few_groups(self, sample: DesignSample) -> None:
-        """Refuse a sample in which too few groups have a value in each row."""
+        """Raise `RefusedError` if there are too few complete groups."""
         kept, every = int(sample.whole.sum()), sample.whole.size
         if kept < self.least:
             where = " where the event happens" * self.conditional

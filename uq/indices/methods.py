@@ -1,7 +1,7 @@
-"""The sensitivity methods by name, and which of them a design feeds.
+"""Registry of the sensitivity methods, and the methods that each design supports.
 
-To add one: a file with the function that estimates, and an entry here. Study files then accept it
-where a design feeds it; tables, JSON, figures, reports and documentation show what it gives.
+To add a method, write a file with its estimator and add an entry here. Study files then accept it
+for designs that support it; tables, JSON, figures, reports and documentation show its indices.
 """
 
 from collections.abc import Mapping
@@ -158,31 +158,31 @@ METHODS = {
         fast_indices,
         (S1, ST),
         source="extended FAST, Saltelli et al. (1999)",
-        least=0,  # it asks for a whole curve of each input
+        least=0,  # it requires a complete curve of each input
         aggregates=True,
         noise=f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
     ),
 }
-"""In the order in which they are listed; the first of those that a design feeds is its default."""
+"""Methods in the order of listings; the default of a design is the first that it supports."""
 
 
 def indices_of(method: str, kind: str, sample: DesignSample) -> Mapping[str, Estimate]:
-    """Estimate the indices of one kind: input -> index.
+    """Return the estimated indices of one kind: input -> index.
 
     Parameters
     ----------
     method : str
     kind : str
-        Its key.
+        Key of the kind of index.
     sample : DesignSample
-        Its rows laid out as the method needs them.
+        Rows grouped as the method requires.
     """
     by_kind = METHODS[method].indices(sample).values.items()
     return next(indices for index_kind, indices in by_kind if index_kind.key == kind)
 
 
 def fed_by(design: Design, dependent: bool = False) -> tuple[str, ...]:
-    """Return the methods that a design feeds.
+    """Return the methods that a design supports.
 
     Parameters
     ----------
@@ -202,12 +202,12 @@ def fed_by(design: Design, dependent: bool = False) -> tuple[str, ...]:
 
 
 def piloted_by(design: Design) -> str | None:
-    """Return the method with a pilot for a design, if there is one."""
+    """Return the method with a pilot for a design; None if there is none."""
     return next((name for name in fed_by(design) if METHODS[name].pilot), None)
 
 
 def designs_for(method: str) -> tuple[str, ...]:
-    """Return the designs that feed a method; none if the method does not exist."""
+    """Return the designs that support a method; empty if the method does not exist."""
     return tuple(name for name, design in DESIGNS.items() if method in fed_by(design))
 
 
@@ -217,7 +217,7 @@ def for_dependent_inputs() -> tuple[str, ...]:
 
 
 def kinds_with_intervals(design: Design) -> dict[str, tuple[IndexKind, str]]:
-    """Return the indices of single inputs that groups of rows estimate: key -> kind and method.
+    """Return the indices of single inputs with intervals from groups: key -> kind and method.
 
     Indices of a plain sample are excluded: a run with `until` can forecast only means over groups.
     """

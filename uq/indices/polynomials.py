@@ -1,4 +1,4 @@
-"""Polynomials in correlated normal scores, whose Shapley values are known by formula."""
+"""Polynomials in correlated normal scores (Wick products), with analytical Shapley values."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -11,13 +11,13 @@ import numpy as np
 from uq.contract import Floats
 
 DEGREE = 3
-"""Of the products in total, at most."""
+"""Largest total degree of the products."""
 
 MOST_TOGETHER = 12
-"""The sets of more inputs, correlated with each other, are too many."""
+"""Largest number of mutually correlated inputs, limited by the number of their subsets."""
 
 Term = tuple[int, ...]
-"""The places of the scores in a product, in order; a power repeats its place."""
+"""Sorted indices of the scores in a product; a power repeats its index."""
 
 
 def terms_of(places: Sequence[int], matrix: Floats, most: float) -> tuple[Term, ...]:
@@ -27,14 +27,14 @@ def terms_of(places: Sequence[int], matrix: Floats, most: float) -> tuple[Term, 
     ----------
     places : sequence of int
     matrix : ndarray, shape (d, d)
-        The correlations of all scores.
+        Correlation matrix of all scores.
     most : float
 
     Returns
     -------
     tuple of tuple of int
-        Without products that belong to more than `MOST_TOGETHER` inputs: its factors, and inputs
-        correlated with them.
+        Products that depend on more than `MOST_TOGETHER` inputs are excluded. The inputs of a
+        product are its factors and all inputs correlated with them.
     """
     terms: tuple[Term, ...] = ()
     for degree in range(1, DEGREE + 1):
@@ -47,7 +47,7 @@ def terms_of(places: Sequence[int], matrix: Floats, most: float) -> tuple[Term, 
 
 
 def products(z: Floats, terms: Sequence[Term], matrix: Floats) -> Floats:
-    """Return Wick's products of normal scores.
+    """Return Wick products of normal scores.
 
     Parameters
     ----------
@@ -58,8 +58,8 @@ def products(z: Floats, terms: Sequence[Term], matrix: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (..., terms)
-        Products of different degree are uncorrelated, and have mean zero. Of independent scores
-        they are products of Hermite polynomials. Scaled to a variance of the order of one.
+        Products of different degree are uncorrelated, and have mean zero. For independent scores
+        they are products of Hermite polynomials. They are scaled to a variance of the order of 1.
     """
     cache: dict[Term, Floats] = {(): np.ones(z.shape[:-1])}
 
@@ -85,7 +85,7 @@ def shapley_values(weights: Floats, terms: Sequence[Term], matrix: Floats) -> Fl
     Parameters
     ----------
     weights : ndarray, shape (terms, e)
-        Of `products`; the variances of the elements add up.
+        Coefficients of `products`; the variances of the elements are summed.
     terms : sequence of tuple of int
     matrix : ndarray, shape (d, d)
 
@@ -95,9 +95,9 @@ def shapley_values(weights: Floats, terms: Sequence[Term], matrix: Floats) -> Fl
 
     Notes
     -----
-    The mean of a product given some scores is the product of their means given these, in the sense
-    of Wick; and two products of degree n have the covariance of n factors each, the sum over all
-    ways to pair them of the products of the covariances of pairs [1]_.
+    The conditional mean of a Wick product given a set of scores is the Wick product of the
+    conditional means of its factors. The covariance of two products of degree n is the sum, over
+    all pairings of their factors, of the products of the covariances of the pairs [1]_.
 
     References
     ----------
@@ -118,8 +118,8 @@ def _forms(terms: tuple[Term, ...], matrix: bytes) -> list[tuple[list[int], list
     Returns
     -------
     list of (terms, inputs, matrices)
-        A form for the products that share their inputs, since all others are uncorrelated: the
-        places of the products and of the inputs, and a matrix for each input, shape (inputs,
+        One form for each group of products with the same inputs, since all others are uncorrelated:
+        the indices of the products and of the inputs, and a matrix for each input, shape (inputs,
         terms, terms).
     """
     flat = np.frombuffer(matrix)
@@ -134,7 +134,7 @@ def _forms(terms: tuple[Term, ...], matrix: bytes) -> list[tuple[list[int], list
 
 
 def _matrices(terms: list[Term], inputs: tuple[int, ...], matrix: Floats) -> Floats:
-    """Return the form of a group of products, by subsets of their inputs: L. S. Shapley (1953)."""
+    """Return the Shapley form of a group of products, from all subsets of inputs (Shapley 1953)."""
     d = len(inputs)
     matrices = np.zeros((d, len(terms), len(terms)))
     for size in range(1, d + 1):
@@ -165,12 +165,12 @@ def _explained(terms: list[Term], given: list[int], matrix: Floats) -> Floats:
 
 
 def _scale(term: Term) -> float:
-    """Return the reciprocal standard deviation of a product of independent scores."""
+    """Return the reciprocal of the standard deviation of a product of independent scores."""
     return 1 / sqrt(prod(factorial(term.count(place)) for place in set(term)))
 
 
 def _groups(matrix: Floats) -> Floats:
-    """Return the group of each input: inputs correlated directly or through others share one."""
+    """Return the group of each input: inputs correlated directly or indirectly share a group."""
     from scipy.sparse.csgraph import connected_components
 
     return np.asarray(connected_components(matrix != 0, directed=False)[1])

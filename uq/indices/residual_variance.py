@@ -1,4 +1,4 @@
-"""The variance that remains when one input is known, from rows in the order of that input."""
+"""Residual variance given one input, by difference-based estimators along that input."""
 
 from functools import lru_cache
 from itertools import islice
@@ -11,19 +11,19 @@ from uq.contract import Floats, Mask
 from uq.stats.intervals import Replicates, replicates_of_some
 
 LEAST_LAGS = 8
-"""Fewer lags than this leave the intercept of a parabola too noisy."""
+"""Minimum number of lags; with fewer, the intercept of a parabola is too noisy."""
 
 _MOST_LAGS = 100
 _FEWEST_LAGS = 4
-_LEAST_PAIRED = 0.1  # share of the pairs of rows some places apart that are of two replicates
-_FEWEST_EQUAL = 5  # rows with one value that show the variance at this value
+_LEAST_PAIRED = 0.1  # least share of pairs at one lag that are from different replicates
+_FEWEST_EQUAL = 5  # fewest rows of one value from which the variance at this value is estimated
 _MOST_NEIGHBOURS = 30
-_BENT = 3.0  # standard errors by which fewer lags may differ
-_JUMP = 16.0  # a squared residual from one side this many times that from the other side
+_BENT = 3.0  # standard errors by which the estimate from fewer lags may differ
+_JUMP = 16.0  # ratio of the squared residuals of both sides that indicates a jump
 
 
 class Residual(NamedTuple):
-    """The residual variance, with the terms from which its error is estimated.
+    """Estimated residual variance, with the terms required for its standard error.
 
     Attributes
     ----------
@@ -32,10 +32,10 @@ class Residual(NamedTuple):
     squares : ndarray, shape (n,)
         Squared residual of each row, weighted as in the estimate.
     noise : float
-        n times the variance that pairing rows adds to the mean of these squares.
+        n times the variance that the pairing of rows adds to the mean of these squares.
     excess : float
-        n times the variance by which smoothing inflates the scatter of the difference between a
-        squared residual and the squared deviation from the mean.
+        n times the variance that smoothing adds to the difference between the squared residual and
+        the squared deviation from the mean.
     """
 
     variance: float
@@ -51,8 +51,8 @@ def variance(y: Floats, part: Replicates = None) -> float:
     ----------
     y : ndarray, shape (n, e)
     part : ndarray of int, shape (n,), optional
-        Only rows of different replicates are compared: those of one replicate may depend on
-        each other.
+        Only rows of different replicates are compared, since rows of one replicate may be
+        dependent.
     """
     pairs, total = float(len(y)) ** 2, _pair_sum(y)
     if part is None:
@@ -69,12 +69,15 @@ def _pair_sum(y: Floats) -> float:
 
 
 def ordered_residual_variance(y: Floats, part: Replicates = None) -> float:
-    """Estimate the residual variance alone, from rows in the order of an input without ties."""
+    """Estimate the residual variance without its error terms, from rows sorted by an input.
+
+    The input has no ties.
+    """
     return variance(y, part) if len(y) <= 2 * LEAST_LAGS else _extrapolated(y, part)[2]
 
 
 def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual:
-    """Estimate the variance of an output that is left when an input is known.
+    """Estimate the residual variance of an output given one input, E[Var(y | x)].
 
     Parameters
     ----------
@@ -86,20 +89,20 @@ def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual
     -------
     Residual
         Values of the input that at least five rows share contribute the variance of these rows,
-        which is exact for discrete inputs. Of all other rows, half the mean squared difference
-        of rows that are l places apart in the order of the input exceeds the residual variance
-        by what the conditional mean changes over l places: in proportion to l where it jumps,
-        to l^2 where it is smooth. The intercept of a parabola in l has neither error [1]_,
+        which is exact for discrete inputs. For all other rows, the estimate uses half the mean
+        squared difference of rows at lag l in the order of the input. It exceeds the residual
+        variance by the change of the conditional mean over l rows: in proportion to l at jumps, and
+        to l^2 where the mean is smooth. The intercept of a parabola in l removes both errors [1]_,
         [2]_. The first and last l rows, which have one partner instead of two, count twice.
 
     Notes
     -----
-    More lags reduce the noise but widen the range in which the mean must be a few jumps or a
-    parabola: their number grows with n, and with the ratio of the variance left to that explained.
-    It is halved where fewer lags give another intercept by more than the noise, down to four lags,
-    and what the last halving changes beyond the noise enters the error. Waves of fewer rows each
-    than about three times the lags have neither a parabola in l nor an intercept that shows it: of
-    five rows a wave, no lags do.
+    More lags reduce the noise, but widen the range over which the mean is assumed to be a parabola
+    with few jumps. The number of lags increases with n, and with the ratio of residual to explained
+    variance. It is halved, down to four lags, as long as fewer lags change the intercept by more
+    than the noise; the change of the last halving beyond the noise is added to the error. Waves of
+    fewer rows each than about three times the number of lags do not follow a parabola in l, and the
+    intercept does not reveal this. For waves of five rows no number of lags works.
 
     References
     ----------
@@ -114,7 +117,7 @@ def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual
     shared = counts >= _FEWEST_EQUAL
     alike = [order[i : i + k] for i, k in zip(starts[shared], counts[shared], strict=True)]
     rest = order[np.repeat(~shared, counts)]
-    if len(rest) <= 2 * LEAST_LAGS:  # too few for lags: one group, whatever their values
+    if len(rest) <= 2 * LEAST_LAGS:  # too few rows for lags: one group, independent of their values
         alike, rest = [*alike, rest], rest[:0]
     residuals = [(rows, _of_equal(y[rows], replicates_of_some(part, rows))) for rows in alike]
     if len(rest):
@@ -122,7 +125,7 @@ def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual
     residuals = [(rows, left) for rows, left in residuals if np.isfinite(left.variance)]
     kept = sum(len(rows) for rows, _ in residuals)
     squares = np.zeros(len(y))
-    if not residuals:  # no two rows of one value are of different replicates
+    if not residuals:  # no value has rows from two replicates
         return Residual(np.nan, squares, 0.0, 0.0)
     for rows, left in residuals:
         squares[rows] = left.squares
@@ -133,7 +136,7 @@ def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual
 
 
 def _of_equal(y: Floats, part: Replicates) -> Residual:
-    """Return the residual variance of rows with one value of the input."""
+    """Return the residual variance of rows with the same value of the input."""
     n = len(y)
     if n < 2:
         return Residual(np.nan, np.zeros(n), 0.0, 0.0)
@@ -143,7 +146,7 @@ def _of_equal(y: Floats, part: Replicates) -> Residual:
 
 
 def _of_neighbours(y: Floats, part: Replicates) -> Residual:
-    """Return the residual variance of rows in the order of the input."""
+    """Return the residual variance of rows sorted by the input."""
     number, lags, left, bend = _extrapolated(y, part)
     squares, local, smoothed = _squared_residuals(y, number, left)
     noise = len(y) * bend
@@ -155,18 +158,18 @@ def _of_neighbours(y: Floats, part: Replicates) -> Residual:
 
 
 def _extrapolated(y: Floats, part: Replicates) -> tuple[int, tuple[int, ...], float, float]:
-    """Extrapolate the residual variance to no lag.
+    """Return the residual variance extrapolated to lag zero.
 
     Returns
     -------
     number : int
         Number of lags.
     lags : tuple of int
-        That are used.
+        Lags used.
     left : float
-        The residual variance.
+        Residual variance.
     bend : float
-        The square of what fewer lags change beyond the noise.
+        Squared change of the estimate by fewer lags, beyond the noise.
     """
     number = _number_of_lags(y, part)
     lags = _lags(number, len(y), part)
@@ -181,7 +184,7 @@ def _extrapolated(y: Floats, part: Replicates) -> tuple[int, tuple[int, ...], fl
 def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
     """Return the weight of each row, relative to a row with two partners at each lag.
 
-    Near the ends of the order rows count a quarter less, and those they meet a quarter more.
+    Rows near the ends of the order count a quarter less, and their partners a quarter more.
     """
     lag, quarter = np.array(lags, int), np.array(_weights(lags)) / 4
     changes = np.zeros(rows)
@@ -194,7 +197,7 @@ def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
 
 
 def _lags(number: int, rows: int, part: Replicates) -> tuple[int, ...]:
-    """Return the first lags at which enough rows are of different replicates."""
+    """Return the first lags at which enough pairs are from different replicates."""
     if part is None:
         return tuple(range(1, number + 1))
     lags = range(1, min(3 * number, rows // 3) + 1)
@@ -218,18 +221,19 @@ def _intercept(y: Floats, part: Replicates, lags: tuple[int, ...]) -> float:
 
 
 def _used(part: Replicates, lag: int) -> float:
-    """Return the share of pairs of rows at this lag that belong to two replicates."""
+    """Return the share of pairs of rows at this lag that are from different replicates."""
     return 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
 
 
 def _unbent(
     y: Floats, part: Replicates, lags: tuple[int, ...], halves: Floats
 ) -> tuple[tuple[int, ...], float]:
-    """Return the lags, or the first half of them where both together follow no parabola.
+    """Return the lags, halved until they follow a parabola (Lepskii's method), and the change.
 
-    Half of them again, and so on [1]_: beyond a jump near an end of the order there are fewer rows
-    than lags, and the number of pairs across it no longer grows with the lag; a wave may be shorter
-    than the lags. Also the square of what the last halving changes, less that of its noise.
+    Halving is repeated [1]_ for two cases. Beyond a jump near an end of the order there may be
+    fewer rows than lags, so that the number of pairs across it no longer increases with the lag. A
+    wave may be shorter than the lags. The second value is the squared change of the estimate by the
+    last halving, minus its noise variance.
 
     References
     ----------
@@ -238,7 +242,7 @@ def _unbent(
     """
     used = np.array([_used(part, lag) for lag in lags])
     steps = np.sum((y[1:] - y[:-1]) ** 2, axis=1) / 2
-    product = float(np.mean(steps[2:] * steps[:-2]))  # of the variances of neighbours
+    product = float(np.mean(steps[2:] * steps[:-2]))  # product of neighbouring variances
     bend = 0.0
     while (half := len(lags) // 2) >= _FEWEST_LAGS:
         change = np.array(_weights(lags))
@@ -253,9 +257,9 @@ def _unbent(
 
 
 def _half_square(y: Floats, part: Replicates, lag: int) -> float:
-    """Return half the mean squared difference of rows at this lag."""
+    """Return half the mean squared difference of rows at this lag (empirical semivariogram)."""
     steps = y[lag:] - y[:-lag]
-    if part is None:  # the counts of both ends make up for the pairs that are lacking
+    if part is None:  # the rows at both ends count twice, in place of missing pairs
         first, last = steps[:lag].ravel(), steps[-lag:].ravel()
         ends = (first @ first + last @ last) / 2
         return float((steps.ravel() @ steps.ravel() + ends) / (2 * len(y)))
@@ -281,10 +285,10 @@ def _number_of_lags(y: Floats, part: Replicates) -> int:
 
 
 def _squared_residuals(y: Floats, lags: int, left: float) -> tuple[Floats, Floats, Floats]:
-    """Return squared residuals from the mean of neighbours, their local mean, and of how many.
+    """Return squared residuals from the mean of neighbours, their local mean, and the counts.
 
-    Across a jump the mean of both sides is far off: the side that fits counts there, and the
-    scatter of the differences over the jump as the geometric mean of both.
+    At a jump the mean of both sides is biased. There only the side that fits is used, and the
+    variance of the differences across the jump is the geometric mean of both sides.
     """
     n, reach = len(y), int(np.clip(lags // 4, 2, _MOST_NEIGHBOURS))
     row = np.arange(n)

@@ -1,4 +1,4 @@
-"""Shapley effects: shares of the variance that sum to one, estimated along paths."""
+"""Shapley effects, which are shares of the variance that sum to 1, estimated along paths."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from uq.stats.estimate import Estimate
 from uq.stats.intervals import ROUNDING, UNKNOWN, is_constant, scatter_interval
 
 MIN_SEEN = 10
-"""With fewer paths an effect of the input itself cannot be excluded."""
+"""Minimum number of paths for the conclusion that an input has no effect of its own."""
 
 
 def parts_of(sample: DesignSample, y: Floats) -> Floats:
@@ -21,12 +21,12 @@ def parts_of(sample: DesignSample, y: Floats) -> Floats:
     ----------
     sample : DesignSample
     y : ndarray, shape (n, k) or (n, k, e)
-        Any function of the rows of whole paths; its elements add up.
+        Any function of the rows of complete paths; contributions are summed over its elements.
 
     Returns
     -------
     ndarray, shape (n, d)
-        Unbiased for the Shapley values of its variance.
+        Unbiased estimates of the Shapley values of its variance.
     """
     before, after = y[:, :-1], y[:, 1:]
     steps = (y[:, :1] - (before + after) / 2) * (before - after)
@@ -35,18 +35,18 @@ def parts_of(sample: DesignSample, y: Floats) -> Floats:
 
 
 def changes_alone(sample: DesignSample) -> Mask:
-    """Return the mask of whole paths along which each input alone changes the output, shape (n, d).
+    """Return the mask of complete paths on which each input alone changes the output, shape (n, d).
 
-    An input shows this where it is the first to change: all others then keep their values.
+    This can be observed if the input is the first to change: all others then keep their values.
     """
     y = sample.grouped[sample.whole]
     moved = np.abs(y[:, 1] - y[:, 0]) > ROUNDING * np.abs(y).max()
-    moved = moved.reshape(len(y), -1).any(axis=1)  # some element of a whole output
+    moved = moved.reshape(len(y), -1).any(axis=1)  # any element of the output
     return np.asarray((sample.direction[sample.whole][:, 0] != 0) & moved[:, None])
 
 
 def paths_without_effect(sample: DesignSample, name: str) -> int:
-    """Return how many paths show that a correlated input has no effect of its own; else 0.
+    """Return the number of paths that show no effect of a correlated input itself; else 0.
 
     Only paths along which the output changes are informative.
     """
@@ -63,39 +63,40 @@ def paths_without_effect(sample: DesignSample, name: str) -> int:
 
 
 FOLDS = 4
-"""Of the paths: the polynomial that serves on one is fitted to the rows of all others."""
+"""Number of cross-fitting folds: the polynomial used on a fold is fitted to all other folds."""
 
 ROWS_EACH = 4
-"""Rows for each weight that is fitted to them."""
+"""Rows required per fitted coefficient."""
 
 MOST_TERMS = 250
 MOST_NUMBERS = 30_000_000
-"""In all products of all rows."""
+"""Largest number of values of all products over all rows."""
 
 
 def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
-    """Correct the parts of the variance by a polynomial as control variate.
+    """Return the contributions corrected by a polynomial as control variate.
 
     Parameters
     ----------
     sample : DesignSample
-        Of paths.
+        Sample of paths.
     parts : ndarray, shape (n, d)
-        Of the output, on each whole path.
+        Contribution of each input on each complete path (`parts_of`).
 
     Returns
     -------
     parts : ndarray, shape (n, d)
-        With the same expectation, and less scatter where the output resembles a polynomial in the
-        normal scores: the errors of the polynomial's parts on the paths are subtracted, times the
-        coefficient of their regression, from 0 (of no use) to 1.
+        Contributions with the same expectation, and less scatter if the output resembles a
+        polynomial in the normal scores. The errors of the polynomial's contributions on the paths
+        are subtracted, times their regression coefficient, which is between 0 (no use) and 1.
     leverage : ndarray, shape (n, d)
-        Of each path in that regression: the part of its error that the regression hides.
+        Leverage of each path in the regression: the part of its error that the fit absorbs.
 
     Notes
     -----
-    The method is that of control variates [1]_. Fitted to other paths, the polynomial is a given
-    one, whatever its fit, and the errors of its parts have mean zero.
+    The method is control variates with cross-fitting [1]_. The polynomial used on a path is fitted
+    to other paths, and is therefore independent of it. The errors of its contributions have mean
+    zero, whether or not the fit is good.
 
     References
     ----------
@@ -110,15 +111,15 @@ def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
 
 
 def _errors(sample: DesignSample, parts: Floats) -> Floats:
-    """Return the parts of a polynomial estimated on each path, less their exact values."""
+    """Return the errors of a polynomial's contributions: estimates on paths minus exact values."""
     errors = np.zeros_like(parts)
     y = sample.grouped[sample.whole]
     n, rows = y.shape[:2]
-    y = (y - y.mean(axis=(0, 1))).reshape(n, rows, -1)  # with the elements of a whole output
+    y = (y - y.mean(axis=(0, 1))).reshape(n, rows, -1)  # last axis: elements of the output
     enough = n * rows * (1 - 1 / FOLDS) / ROWS_EACH
     most = min(enough, MOST_TERMS, MOST_NUMBERS / (n * rows))
-    # Inputs that never change the output by themselves are left out: if they have no effect, paths
-    # show that exactly.
+    # Inputs that never change the output alone are excluded: if they have no effect, paths show
+    # this exactly.
     used = np.isfinite(sample.scores[0, 0, 0]) & changes_alone(sample).any(axis=0)
     terms = terms_of(np.flatnonzero(used).tolist(), sample.matrix, most)
     if not terms:
@@ -143,10 +144,10 @@ def _products_of(left: Floats, right: Floats) -> Floats:
 
 
 MIN_PATHS = 32
-"""With fewer paths Student's law does not give the interval of a mean."""
+"""Minimum number of paths for Student's interval of a mean."""
 
 EXACT = 1e-9
-"""The least half-width of an interval: the rounding error of an exact effect."""
+"""Smallest half-width of an interval: the rounding error of an exact effect."""
 
 
 def shapley_indices(sample: DesignSample) -> Indices:
@@ -155,32 +156,32 @@ def shapley_indices(sample: DesignSample) -> Indices:
     Parameters
     ----------
     sample : DesignSample
-        Of paths.
+        Sample of paths.
 
     Returns
     -------
     Indices
-        ``shapley``, shares of the variance. Paths are independent: intervals are Student's, for the
-        ratio linearised. An input whose share is due to its correlation alone is named.
+        ``shapley``, shares of the variance. Paths are independent: intervals are Student's for the
+        linearised ratio. Inputs whose share is due to correlation alone are listed.
 
     Raises
     ------
     RefusedError
-        A constant output, or one that is constant along each path. Too few paths to tell the
-        variance from zero: a ratio to it then has no bounded interval [5]_.
+        The output is constant, or constant along each path. Or there are too few paths to
+        distinguish the variance from zero: a ratio to it then has no bounded interval [5]_.
 
     Notes
     -----
-    Along a path, inputs change one by one in random order; those that have changed are drawn given
-    those that have not. So the output y at the start of the path and the one after some steps are
-    independent given the inputs that have not changed, and half their squared difference
-    estimates the variance that is left when these are known without bias: the value of a set of
-    inputs in [1]_, by one outer and two inner rows [2]_. Its increase, the mean of
+    Along a path, inputs change one by one in random order. Changed inputs are drawn conditionally
+    on the unchanged ones. The output y at the start of the path and the output after a number of
+    steps are therefore independent given the unchanged inputs. Half their squared difference is an
+    unbiased estimate of the residual variance given these inputs: the value of a set of inputs in
+    [1]_, from one outer and two inner rows [2]_. Its increase, the mean of
     (y - (before + after)/2) (before - after) over the steps of an input, is the input's Shapley
     effect times the variance. For independent inputs this is the estimator of [3]_. The sum over a
-    path is (y - end)^2/2. A polynomial of known effects serves as control variate
-    (`uq.indices.shapley`); a path's error is that from the regression on all others, "HC3" of
-    [4]_.
+    path is (y - end)^2/2. A polynomial with known effects is used as control variate
+    (`uq.indices.shapley`). The error of a path is its residual from the regression on all other
+    paths ("HC3" of [4]_).
 
     References
     ----------
@@ -215,7 +216,7 @@ def shapley_indices(sample: DesignSample) -> Indices:
     effects, alike = {}, []
     for name, contrast in contrasts.items():
         share, error = float(shares @ contrast), errors @ contrast
-        # Where every path shows the same, scatter is rounding.
+        # If all paths agree, the scatter is only rounding.
         certain = is_constant(seen[0] @ contrast + seen[1] @ contrast)
         alike += [name] * certain
         low, high = scatter_interval(share, error, sample.confidence)
@@ -236,7 +237,7 @@ def shapley_indices(sample: DesignSample) -> Indices:
 
 
 def _linearised(parts: Floats, leverage: Floats | float = 0.0) -> tuple[Floats, Floats]:
-    """Return shares of the variance, shape (d,), and the errors of paths, shape (n, d)."""
+    """Return linearised shares of the variance, shape (d,), and errors of paths, shape (n, d)."""
     mean = parts.mean(axis=0)
     shares, scatter = mean / mean.sum(), (parts - mean) / (1 - leverage)
     return shares, (scatter - shares * scatter.sum(axis=1, keepdims=True)) / mean.sum()

@@ -1,4 +1,4 @@
-"""Sobol' indices of a crossed design, with intervals from the replicates."""
+"""Sobol' indices of a crossed design, with confidence intervals from the replicates."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -20,47 +20,47 @@ from uq.indices.method import NO_VARIANCE, UNSEEN, DesignSample
 from uq.sampling.designs import NOISE
 
 MIN_GROUPS = 8
-"""Fewer groups than this do not give a useful index."""
+"""Minimum number of groups for a useful index."""
 
 _NOISE = IndexKind(NOISE, "share of noise", "variance")
 
 Estimates = Callable[[Sequence[str], Floats], Values]
-"""Names of the blocks, and groups of shape (n, blocks), standardised -> indices."""
+"""Block names and standardised groups of shape (n, blocks) -> indices."""
 
 
 def sobol_indices(sample: DesignSample, estimates: Estimates | None = None) -> Indices:
-    """Estimate first-order, total and, where the design has them, second-order indices.
+    """Estimate first-order, total and, if the design allows, second-order Sobol' indices.
 
-    Indices of a whole output are aggregated [5]_: parts of the variance are summed over elements.
+    Indices of an output with elements are aggregated [5]_: variances are summed over elements.
 
     Parameters
     ----------
     sample : DesignSample
-        Of a crossed design.
+        Sample of a crossed design.
     estimates : callable, optional
-        Estimators to compare with those below.
+        Alternative estimators, for comparison.
 
     Returns
     -------
     Indices
-        Pooled over all groups, with intervals from the scatter between replicates. Where the
+        Indices pooled over all groups, with intervals from the scatter between replicates. If the
         variance rests on few rows, intervals are widened by the effect of one more such row. For a
         random model `noise` is the total index of the seed.
 
     Raises
     ------
     RefusedError
-        A constant output.
+        The output is constant.
 
     Notes
     -----
-    S1 is the estimator of [1]_ with a control variate, after [2]_; ST is that of [3]_, S2 that of
-    [4]_. `benchmarks/estimators.py` compares them with others on the same rows.
+    S1 is the estimator of [1]_ with a control variate after [2]_. ST is the estimator of [3]_, and
+    S2 the estimator of [4]_. `benchmarks/estimators.py` compares them with others on the same rows.
 
-    For a random model A and AB_i share a seed, B and BA_i another, and `NOISE` has the inputs of A
-    and the seed of B. S1 and S2 are means of products of rows with different seeds, which noise
-    enters through the variance alone. ST is a mean square of differences at one seed: of the noise
-    it includes the interaction with the input.
+    For a random model, A and AB_i share one seed, B and BA_i another. `NOISE` has the inputs of A
+    and the seed of B. S1 and S2 are means of products of rows with different seeds: noise affects
+    them only through the variance. ST is a mean squared difference at one seed: it includes the
+    interaction of the input with the noise.
 
     References
     ----------
@@ -143,11 +143,12 @@ def _estimates(blocks: Sequence[str], y: Floats) -> Values:
 
 
 def first_order(a: Floats, ab: Floats, b: Floats) -> float:
-    """Return S1 from the blocks A, AB_i and B.
+    """Return the first-order index S1 from the blocks A, AB_i and B.
 
-    The mean product of B and AB_i, which share input i, over the variance of these rows (Janon et
-    al. 2014). The product of A and B, of mean zero, is a control variate: by chance, B correlates
-    with AB_i as far as it does with A and A is like AB_i, by 1 - ST (Glen & Isaacs 2012).
+    It is the mean product of B and AB_i, which share input i, divided by the variance of these rows
+    (Janon et al. 2014). The product of A and B has mean zero and is used as control variate: the
+    spurious correlation of B and AB_i is their spurious correlation with A times the correlation of
+    A and AB_i, which is 1 - ST (Glen & Isaacs 2012).
     """
     a, ab, b = (block - block.mean(axis=0) for block in (a, ab, b))
     apart, spread = np.mean((a - ab) ** 2, axis=0) / 2, np.var(np.r_[a, ab], axis=0)
@@ -156,30 +157,30 @@ def first_order(a: Floats, ab: Floats, b: Floats) -> float:
 
 
 def total_order(a: Floats, ab: Floats, b: Floats) -> float:
-    """Return ST from the blocks A, AB_i and B: Jansen (1999)."""
+    """Return the total index ST from the blocks A, AB_i and B (Jansen 1999)."""
     return _share(0.5 * np.mean((a - ab) ** 2, axis=0), a, b)
 
 
 def second_order(a: Floats, ab: Floats, ab_other: Floats, ba: Floats, b: Floats) -> float:
-    """Return S2 from the blocks A, AB_i, AB_j, BA_i and B: Saltelli (2002)."""
+    """Return the second-order index S2 from A, AB_i, AB_j, BA_i and B (Saltelli 2002)."""
     parts = (ba * ab_other - a * b, b * (ab - a), b * (ab_other - a))
     both, first, second = (_share(np.mean(part, axis=0), a, b) for part in parts)
     return both - first - second
 
 
 def _share(part: Floats, a: Floats, b: Floats) -> float:
-    """Return a part of the variance over the total variance; 0 if the total is only rounding."""
+    """Return a variance part divided by the total variance; 0 if the total is only rounding."""
     variance = np.var(np.r_[a, b], axis=0).sum()
     return float(part.sum() / variance) if variance > np.finfo(float).eps else 0.0
 
 
 def pilot(sample: DesignSample) -> dict[IndexKind, float]:
-    """Return the largest standard deviation, over inputs, of a group's share in S1 and in ST.
+    """Return the largest standard deviation, over inputs, of a group's term in S1 and in ST.
 
     Parameters
     ----------
     sample : DesignSample
-        A few groups of a crossed design, of which some are whole.
+        A few groups of a crossed design, including complete ones.
 
     Returns
     -------
@@ -193,7 +194,7 @@ def pilot(sample: DesignSample) -> dict[IndexKind, float]:
     for ab in mixed:
         apart = (a - ab) ** 2 / 2
         product = b * (ab - (1 - apart.mean()) * a)
-        # A ratio of means, whose error is that of a difference.
+        # Linearised ratio of means.
         spread[S1].append(np.std(product - product.mean() * (b**2 + ab**2) / 2))
         spread[ST].append(np.std(apart))
     return {kind: max(deviations) for kind, deviations in spread.items()}

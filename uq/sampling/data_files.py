@@ -1,7 +1,7 @@
-"""Columns of numbers named by a study file: read from CSV or netCDF, kept in the study's text.
+"""Columns of numbers named by a study file: read from CSV or netCDF, stored in the study's text.
 
-A result contains the text of its study. With the numbers at its end that text is complete: it gives
-the same rows after the files have changed or are gone.
+A result contains the text of its study. The numbers are appended to this text, so that it
+reproduces the same rows after the files have changed or been deleted.
 """
 
 import csv
@@ -24,7 +24,7 @@ from uq.text.literals import key
 from uq.text.numbers import counted
 
 MAX_NUMBERS = 1_000_000
-"""Most numbers in a column: they become part of every result."""
+"""Largest number of values in a column: they are stored in every result."""
 
 Columns = dict[str, dict[str, str]]
 """File -> column -> numbers, as text."""
@@ -33,14 +33,14 @@ Columns = dict[str, dict[str, str]]
 def columns_of_files(
     tables: Mapping[str, Mapping[str, Any]], folder: Path | None
 ) -> tuple[Columns, list[InputFault]]:
-    """Return all columns that a study file names.
+    """Return all data columns named in a study file, and the faults found.
 
     Parameters
     ----------
     tables : dict
-        The sound entries of a study file; files contained in its [data] are not read.
+        Valid entries of a study file; files whose contents are in its [data] are not read.
     folder : Path or None
-        The folder to which names of files are relative; None if there is only [data].
+        Base folder of relative file names; None if all data are in [data].
 
     Returns
     -------
@@ -57,7 +57,7 @@ def columns_of_files(
                 text = " ".join(map(repr, _read(folder, file, column).tolist()))
         except ValueError as error:
             fault = InputFault(path, str(error), file)
-            if fault not in faults:  # one for all columns of a file that cannot be read
+            if fault not in faults:  # one fault for all columns of an unreadable file
                 faults.append(fault)
         else:
             columns.setdefault(file, {})[column] = text
@@ -65,14 +65,14 @@ def columns_of_files(
 
 
 def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
-    """Return the text of a study file with the columns that it names at its end.
+    """Return the text of a study file with the columns that it names appended.
 
     Parameters
     ----------
     text : str
     columns : dict
     kept : dict
-        Its [data].
+        The [data] table of the study.
 
     Returns
     -------
@@ -89,14 +89,14 @@ def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
 
 @lru_cache(maxsize=128)
 def numbers(text: str) -> Floats:
-    """Return the numbers of a column, read-only."""
+    """Return the numbers of a column as a read-only array."""
     values = np.array(text.split(), dtype=float)
     values.setflags(write=False)
     return values
 
 
 def _named(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str, str]]:
-    """Yield the place of each file name, the name, and each column needed from it."""
+    """Yield the path of each entry that names a file, the file name, and each required column."""
     uncertain, design = tables["uncertain"], tables["design"]
     for name, entry in uncertain.items():
         if "file" in entry:
@@ -163,7 +163,7 @@ def _read_csv(path: Path, column: str) -> Floats:
 
 
 def _names(lines: TextIO, mark: str) -> list[str]:
-    """Return the names of the columns, if there are several with this separator."""
+    """Return the column names if this separator gives several columns."""
     lines.seek(0)
     names = next(csv.reader(lines, delimiter=mark, skipinitialspace=True), [])
     return [name.strip() for name in names] if names[1:] else []

@@ -1,4 +1,4 @@
-"""Dependent inputs: a Gaussian copula, and draws given the values of a part of them."""
+"""Dependent inputs: Gaussian copula and conditional sampling given a subset of the inputs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ from uq.sampling.unit_cube import Points, hashed, inside, uniform
 Matrix = tuple[tuple[float, ...], ...]
 
 _LEAST_EIGENVALUE = 1e-9
-_NEAREST = 2e-9  # to -1 or 1; of two inputs alone the least eigenvalue then is large enough
+_NEAREST = 2e-9  # distance from -1 or 1; the least eigenvalue of two inputs is then large enough
 
 
 def normal_correlations(ranks: Matrix) -> Floats:
-    """Return the correlations of normal variables that have these rank correlations.
+    """Return the Pearson correlations of normal variables with the given Spearman correlations.
 
     Parameters
     ----------
     ranks : tuple of tuple of float
-        Spearman's, symmetric, ones on the diagonal.
+        Spearman's rank correlations; symmetric, with ones on the diagonal.
 
     Returns
     -------
@@ -42,7 +42,7 @@ def normal_correlations(ranks: Matrix) -> Floats:
 
 
 def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> InputFault | None:
-    """Return why a matrix is not one of rank correlations, or None.
+    """Return the fault of an invalid rank correlation matrix; None if it is valid.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> InputFault | None:
     Returns
     -------
     InputFault or None
-        Its path is row and column of the entry at fault, or empty.
+        Its path is the row and column of the invalid entry, or empty.
     """
     k = len(names)
     if [len(row) for row in ranks] != [k] * k:
@@ -76,7 +76,7 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> InputFault | None:
 
 
 def correlated(u: Points, ranks: Matrix) -> Points:
-    """Give independent columns the rank correlations of a Gaussian copula.
+    """Return points with the rank correlations of a Gaussian copula, from independent points.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def correlated(u: Points, ranks: Matrix) -> Points:
     from scipy.special import ndtr, ndtri
 
     factor = np.linalg.cholesky(normal_correlations(ranks))
-    # Sums of contiguous columns: a matrix product may round a row according to its place.
+    # Sums of contiguous columns: a matrix product may round a row according to its position.
     z = [ndtri(np.ascontiguousarray(column)) for column in u.T]
     points = u.copy()
     for i in range(1, len(z)):
@@ -108,10 +108,10 @@ def _is_definite(matrix: Floats) -> bool:
 
 
 def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
-    """Return a correction of a matrix: one entry if possible, else weaker correlations.
+    """Return the proposed correction of a matrix: one entry if possible, else weaker correlations.
 
-    Given all others, the range of one entry is the part explained by the other inputs plus or minus
-    the unexplained part: a partial correlation from -1 to 1.
+    If all other entries are fixed, an entry may range over the part explained by the other inputs
+    plus or minus the unexplained part: a partial correlation from -1 to 1.
     """
     matrix, corrections = normal_correlations(ranks), []
     k = len(matrix)
@@ -137,7 +137,7 @@ def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
 
 
 def _most(ranks: Matrix) -> float:
-    """Return the largest factor, in steps of 0.01, that makes the correlations possible."""
+    """Return the largest factor, in steps of 0.01, that makes the matrix positive definite."""
     off = np.array(ranks) - np.eye(len(ranks))
     for percent in range(99, 0, -1):
         weaker = normal_correlations(tuple(map(tuple, np.eye(len(off)) + percent / 100 * off)))
@@ -147,19 +147,19 @@ def _most(ranks: Matrix) -> float:
 
 
 CellOf = Callable[[Floats], tuple[Floats, Floats]]
-"""Probabilities that a discrete law maps to values -> P(less) and P(not more) of each value."""
+"""Points of the unit interval -> P(X < x) and P(X <= x) of the values x of a discrete law."""
 
-_AT_ONCE = 4096  # proposals
+_AT_ONCE = 4096  # proposals per batch
 
 
 def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) -> Points:
-    """Give paths through independent points the rank correlations of a Gaussian copula.
+    """Return paths with the rank correlations of a Gaussian copula, from independent paths.
 
     Parameters
     ----------
     u : ndarray, shape (n, rows, k)
-        In (0, 1). Along a path, each coordinate changes at most once, from that of the first row
-        to that of the last; each path is mapped by itself.
+        In (0, 1). Along a path, each coordinate changes at most once, from its value in the first
+        row to its value in the last row. Each path is mapped by itself.
     ranks : tuple of tuple of float
     cells : sequence of callable or None
         For each input; None if its law is continuous.
@@ -167,13 +167,15 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
     Returns
     -------
     ndarray, shape (n, rows, k)
-        Every row follows the copula. The inputs that have changed since the first row are drawn
-        given the values of the others, and independently of their own values in the first row.
+        Every row follows the copula. Inputs that have changed since the first row are drawn from
+        their conditional law given the other inputs, independently of their values in the first
+        row.
 
     Notes
     -----
-    Inputs are drawn one after the other [1]_: those known, then those changed, the last to change
-    first, so that neighbouring rows share their random numbers.
+    Inputs are drawn sequentially (Rosenblatt transformation) [1]_: first the unchanged inputs, then
+    the changed ones, starting with the last to change. Neighbouring rows thus share their random
+    numbers.
 
     References
     ----------
@@ -189,9 +191,9 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
         if cell is not None:
             low[:, i], high[:, i] = map(ndtri, cell(np.ascontiguousarray(first[:, i])))
     changed = u[:, 1:] != u[:, :1]
-    kind = np.where(changed, 2, (low < high)[:, None])  # a point, an interval, anywhere
+    kind = np.where(changed, 2, (low < high)[:, None])  # 0: point, 1: interval, 2: free
     since = changed.sum(axis=1, keepdims=True)
-    # Narrow intervals first: what is drawn in the others then is more often kept.
+    # Narrow intervals first: this increases the acceptance rate of the others.
     order = np.lexsort((np.where(changed, since, (high - low)[:, None]), kind), axis=-1)
 
     def ordered(values: Floats) -> Floats:
@@ -215,18 +217,18 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
 
 @dataclass(frozen=True)
 class _Rows:
-    """Rows of normal scores, each with its inputs in the order in which they are drawn.
+    """Rows of normal scores, with the order in which the inputs of each row are drawn.
 
     Attributes
     ----------
     factors : ndarray, shape (m, k, k)
-        Cholesky's, of the correlations in each order that occurs.
+        Cholesky factors of the correlation matrix, one for each order that occurs.
     order : ndarray of int, shape (n,)
-        The factor of each row.
+        Index of the Cholesky factor of each row.
     low, high : ndarray, shape (n, k)
-        Between which a score lies.
+        Limits of each score.
     u : ndarray, shape (n, k)
-        In (0, 1), for the draw.
+        Random numbers in (0, 1) for the draw.
     """
 
     factors: Floats
@@ -246,11 +248,11 @@ class _Rows:
 
     @property
     def later(self) -> Mask:
-        """The same but for the first of each row."""
+        """Mask of the restricted scores except the first of each row."""
         return self.intervals & (np.cumsum(self.intervals, axis=1) > 1)
 
     def scores(self) -> Floats:
-        """Draw the scores."""
+        """Return a draw of the scores."""
         scores, _ = self.drawn()
         several = np.flatnonzero(self.intervals.sum(axis=1) > 1)
         if len(several):
@@ -258,15 +260,15 @@ class _Rows:
         return scores
 
     def drawn(self) -> tuple[Floats, Floats]:
-        """Draw each score between its ends, given those before it.
+        """Return scores drawn sequentially from truncated normal laws, with their weights.
 
         Returns
         -------
         scores : ndarray, shape (n, k)
         chance : ndarray, shape (n,)
-            The product of the probabilities of the intervals after the first, each given the
-            scores before it: the density of the scores, given all intervals, is that of the draw
-            times this, but for a constant.
+            Importance weight: the product of the probabilities of the intervals after the first,
+            each given the previous scores. The density of the scores given all intervals is the
+            density of the draw times this weight, up to a constant factor.
         """
         scores, errors = np.empty_like(self.u), list[Floats]()
         chance, later = np.ones(len(self.u)), self.later
@@ -283,7 +285,7 @@ class _Rows:
         return scores, chance
 
     def accepted(self) -> Floats:
-        """Draw rows with several intervals, by rejection."""
+        """Return scores of rows with several intervals, drawn by rejection sampling."""
         k = self.u.shape[1]
         scores, seed, largest = np.empty_like(self.u), hashed(self.u), self.largest_chance()
         pending, tried = np.arange(len(scores)), 0
@@ -302,14 +304,14 @@ class _Rows:
         return scores
 
     def largest_chance(self) -> Floats:
-        """Return an upper bound of the chance of a draw, shape (n,)."""
+        """Return an upper bound of the importance weight of a draw, shape (n,)."""
         bound, inverse = np.ones(len(self.u)), np.linalg.inv(self.factors)
         for i in range(1, self.u.shape[1]):
             rows = np.flatnonzero(self.later[:, i])
             low, high, order = self.low[rows], self.high[rows], self.order[rows]
             sd = self.factors[order, i, i]
             least, most = np.zeros(len(rows)), np.zeros(len(rows))
-            for j in range(i):  # the mean is linear in the scores before
+            for j in range(i):  # the mean is linear in the previous scores
                 slope = -sd * inverse[order, i, j]
                 ends = np.stack([low[:, j], high[:, j]])
                 ends = np.where(slope == 0, 0.0, ends) * slope
@@ -323,13 +325,13 @@ class _Rows:
 
 
 def _between(low: Floats, high: Floats, u: Floats | float) -> tuple[Floats, Floats]:
-    """Return quantiles of the normal law between two ends, and the probability of lying there."""
+    """Return quantiles of the truncated normal law, and the probability of its interval."""
     from scipy.special import ndtr, ndtri
 
-    upper = low > -high  # where the lower tail of the mirrored law has more digits
+    upper = low > -high  # the lower tail of the mirrored law is more accurate here
     least, most = np.where(upper, -high, low), np.where(upper, -low, high)
     below = ndtr(least)
     share = ndtr(most) - below
     quantile = ndtri(below + np.where(upper, 1 - u, u) * share)
-    quantile = np.where(np.isfinite(quantile), quantile, most)  # too far out to have a probability
+    quantile = np.where(np.isfinite(quantile), quantile, most)  # the probability underflows
     return np.where(upper, -quantile, quantile), share

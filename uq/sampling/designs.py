@@ -1,7 +1,7 @@
-"""The designs by name: how each draws its points and groups its rows.
+"""Registry of sampling designs: how each design draws its points and groups its rows.
 
-To add one: a function that draws its points, and an entry here with its properties and the layout
-of its rows, which determines the sensitivity methods it feeds.
+To add a design, write a function that draws its points and add an entry here, with its properties
+and the layout of its rows. The layout determines the sensitivity methods that it supports.
 """
 
 from collections.abc import Callable
@@ -28,11 +28,11 @@ from uq.sampling.unit_cube import (
 
 Places = NDArray[np.int64]
 Rule = Callable[[Places, Places, tuple[str, ...]], tuple[Places, Places]]
-"""Group and block of rows, and the labels of the blocks -> group and block of the row whose seed
-they take."""
+"""Rule for shared seeds: group and block of rows, and the block labels -> group and block of the
+row whose seed each row uses."""
 
 NOISE = "noise"
-"""The block of a crossed design of a random model that has the inputs of A and the seed of B."""
+"""Block of a crossed design of a random model, with the inputs of A and the seed of B."""
 
 
 @dataclass(frozen=True)
@@ -42,18 +42,18 @@ class Layout:
     Attributes
     ----------
     group : tuple of str
-        Name of the unit that estimates use, singular and plural: "only 3 *whole paths*".
+        Name of the group that estimates use, singular and plural: "only 3 *whole paths*".
     labels : callable
         ``labels(parameters, second_order, random)`` -> the names of the blocks of rows, in order.
     shared_seeds : callable
         Which rows of a random model share a seed; see `Rule`.
     one_at_a_time : bool
-        Whether each row of a group differs from the one before it in one input.
+        Whether each row of a group differs from the previous row in one input.
     by_block : bool
-        Whether the rows of one block are a group, instead of one row of each.
+        Whether the rows of one block form a group, instead of one row of each block.
     given_the_rest : bool
-        Whether inputs that depend on each other are drawn, once they have changed, given those that
-        have not (`uq.sampling.dependence`).
+        Whether changed dependent inputs are drawn conditionally on the unchanged ones
+        (`uq.sampling.dependence`).
     """
 
     group: tuple[str, str]
@@ -65,27 +65,27 @@ class Layout:
 
 
 def own_seeds(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
-    """Give each row a seed of its own."""
+    """Return the group and block of each row itself: every row has its own seed."""
     return group, block
 
 
 def _of_ends(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
-    """Give A and its mixtures the seed of A; the other blocks, noise included, the seed of B.
+    """Return the seed rows of a crossed design: A for A and AB_i, B for all other blocks.
 
-    First-order and second-order indices are products of rows of both sides, total ones differences
-    of rows of one.
+    First-order and second-order indices are products of rows with different seeds; total indices
+    are differences of rows with the same seed.
     """
     of_a = np.array([label == "A" or label.startswith("AB_") for label in labels])
     return group, np.where(of_a[block], labels.index("A"), labels.index("B"))
 
 
 def _of_groups(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
-    """Give all rows of a path or trajectory the seed of its first."""
+    """Return the first row of each path or trajectory, whose seed all its rows share."""
     return group, np.zeros_like(block)
 
 
 def _of_curves(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
-    """Give all points of a curve, which is a block, the seed of its first."""
+    """Return the first point of each curve, whose seed all its points share; a curve is a block."""
     return np.zeros_like(group), block
 
 
@@ -119,40 +119,40 @@ CURVES = Layout(
 
 
 MAX_SAMPLES = 2**30
-"""Points of one replicate: the 30 bits of a Sobol' sequence distinguish no more."""
+"""Largest number of points of one replicate, limited by the 30 bits of a Sobol' sequence."""
 
 
 @dataclass(frozen=True)
 class Design:
-    """One way of choosing rows.
+    """A sampling design.
 
     Attributes
     ----------
     meaning : str
-        One line for a reader of the study file.
+        One-line description for readers of the study file.
     draw : callable or None
         ``draw(seed, replicates, d, samples, start, stop)`` -> points start..stop of each replicate,
         shape (stop - start, replicates, [blocks,] d), the same bits for any start and stop.
         Replicates are independent. A crossed design draws 2 d columns. None: the rows are
         imported.
     layout : Layout
-        How its rows are grouped, which decides which sensitivity methods it feeds.
+        Grouping of its rows, which determines the supported sensitivity methods.
     append_only : bool
-        Whether the first points stay the same when more are drawn.
+        Whether the first points do not change when more points are drawn.
     power_of_two : bool
         Whether `samples` must be a power of two.
     independent : bool
-        Whether rows are independent, as formulas for confidence and tolerance bounds assume.
+        Whether rows are independent, as assumed by confidence and tolerance bounds.
     follows_laws : bool
-        Whether the rows of a replicate, or A and B of a crossed design, follow the laws.
+        Whether the rows of a replicate, or A and B of a crossed design, follow the input laws.
     least : int
-        The smallest number of samples.
+        Minimum number of samples.
     nests : bool
         Whether a sample may have several rows (`uq.sampling.levels`).
     most_inputs : int or None
-        Largest number of coordinates of a point, if it is limited.
+        Largest number of coordinates of a point, if limited.
     caution : str
-        A sentence shown with every index from its rows, or "".
+        Sentence shown with every index estimated from its rows, or "".
     """
 
     meaning: str
@@ -169,7 +169,7 @@ class Design:
 
     @property
     def imported(self) -> bool:
-        """Whether its rows come from a file."""
+        """Whether the rows are read from a file."""
         return self.draw is None
 
     @property
@@ -198,12 +198,12 @@ class Design:
         stop: int,
         random: bool = False,
     ) -> Points:
-        """Draw the groups start..stop of every replicate.
+        """Return the groups start..stop of every replicate.
 
         Returns
         -------
         ndarray, shape (stop - start, replicates, blocks, d)
-            Inside the open unit cube.
+            Points inside the open unit cube.
         """
         assert self.draw is not None, "imported rows are not drawn"
         if not self.crossed:
@@ -213,7 +213,7 @@ class Design:
         return cross(points[..., :d], points[..., d:], second_order, random)
 
     def size_problem(self, samples: int) -> str | None:
-        """Return why `samples` is not a legal size, or None."""
+        """Return the reason why `samples` is not a valid sample size; None if it is valid."""
         if not self.least <= samples <= MAX_SAMPLES:
             return f"must be between {self.least} and {MAX_SAMPLES}"
         legal = 1 << (samples - 1).bit_length()
@@ -223,7 +223,9 @@ class Design:
 
 
 def cross(a: Points, b: Points, second_order: bool, random: bool = False) -> Points:
-    """Exchange the columns of two samples one at a time (Saltelli 2002), in SALib's order.
+    """Return the blocks of a crossed design from two samples (Saltelli 2002), in SALib's order.
+
+    The columns of the two samples are exchanged one at a time.
 
     Parameters
     ----------
@@ -231,12 +233,12 @@ def cross(a: Points, b: Points, second_order: bool, random: bool = False) -> Poi
     second_order : bool
         Whether to add the blocks BA_i.
     random : bool
-        Whether to add A once more, for the noise of a random model.
+        Whether to add A a second time, for the noise of a random model.
 
     Returns
     -------
     ndarray, shape (..., blocks, d)
-        A; AB_i, which is A with column i of B; BA_i, the converse; B; A.
+        A; AB_i, which is A with column i of B; BA_i, which is B with column i of A; B; A.
 
     References
     ----------
@@ -311,11 +313,11 @@ DESIGNS = {
 }
 
 IMPORTED = tuple(name for name, design in DESIGNS.items() if design.imported)
-"""Designs whose rows come from a file."""
+"""Designs whose rows are read from a file."""
 
 
 def several(key: str, method: str, count: int = 2) -> str:
-    """Return the remedy in [design] that gives samples several ``units`` or ``repeats``."""
+    """Return the advice for [design] to use several ``units`` or ``repeats`` per sample."""
     if DESIGNS[method].nests:
         return f"set {key} = {count}"
     able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.nests)

@@ -1,4 +1,4 @@
-"""One fault of a study file, and its line for the user."""
+"""Faults of a study file, and their error lines for the user."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
@@ -32,16 +32,17 @@ _REASONS = {
 
 
 class InputFault(NamedTuple):
-    """Something wrong with one entry of a study file.
+    """A fault in one entry of a study file.
 
     Attributes
     ----------
     path : tuple of str or int
-        Its place: table, key, index in a list. Of a part of the file: the place in that part.
+        Path of the entry: table, key, index in a list; relative if only a part of the file is
+        checked.
     problem : str
-        What is wrong, what is allowed, what to do.
+        Problem, allowed values and remedy.
     value : object
-        The value in the file; None if it is not to be shown.
+        Value in the file; None if it is not shown.
     """
 
     path: tuple[str | int, ...]
@@ -49,7 +50,7 @@ class InputFault(NamedTuple):
     value: Any = None
 
     def within(self, *path: str) -> "InputFault":
-        """Return the fault with its place in the whole file."""
+        """Return the fault with its path in the complete file."""
         return self._replace(path=(*path, *self.path))
 
     @property
@@ -71,21 +72,21 @@ def _dotted(path: tuple[str | int, ...]) -> str:
 
 
 def unknown(kind: str, name: str, allowed: Iterable[str]) -> str:
-    """Return the problem of an unknown name, with the nearest name and all that are allowed."""
+    """Return the message for an unknown name, with the closest name and all allowed names."""
     return f"no such {kind}{nearest(name, allowed)} (allowed: {', '.join(allowed)})"
 
 
 def fault_of(
     error: dict[str, Any], allowed_at: Callable[[Sequence[Any]], tuple[str, Sequence[str]]]
 ) -> InputFault:
-    """Return an error of pydantic as a fault.
+    """Return a pydantic error as a fault of the study file.
 
     Parameters
     ----------
     error : dict
-        One of ``ValidationError.errors()``.
+        An item of ``ValidationError.errors()``.
     allowed_at : callable
-        Place of an unknown key -> its kind in words, and the names that it may have.
+        Path of an unknown key -> its kind in words, and the allowed names.
     """
     path, kind = tuple(error["loc"]), error["type"]
     if kind == "missing":

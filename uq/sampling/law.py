@@ -12,10 +12,10 @@ from uq.sampling.levels import LEVELS, OWN
 Positive = Annotated[float, Field(gt=0)]
 
 LIST = Field(strict=False)
-"""Of a tuple, whose items stay strict: TOML has lists only."""
+"""Configuration of a tuple field: TOML has only lists, and the items stay strictly typed."""
 
 STRICT = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-"""Requirements on the keys and values of every table of a study file."""
+"""Pydantic configuration of every table of a study file."""
 
 
 def _known_level(level: str) -> str:
@@ -37,7 +37,7 @@ class Law(BaseModel):
     _ascending: ClassVar[tuple[str, ...]] = ()
     discrete: ClassVar[bool] = False
     either: ClassVar[tuple[tuple[str, ...], ...]] = ()
-    """Sets of arguments, one of which is given."""
+    """Alternative sets of arguments; exactly one set is given."""
     pure: ClassVar[tuple[str, ...]] = ()
     """Arguments without a unit."""
 
@@ -52,24 +52,24 @@ class Law(BaseModel):
 
     @abstractmethod
     def frozen(self) -> Any:
-        """Return the law before any truncation: `cdf`, `sf`, `ppf`, `isf` and `logpdf`."""
+        """Return the law before truncation, with `cdf`, `sf`, `ppf`, `isf` and `logpdf`."""
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The ends of the truncation.
+        """Lower and upper limit of the truncation.
 
-        Quantiles of a truncated law are best computed from those of the law before truncation: that
-        is faster, and accurate in both tails.
+        Quantiles of a truncated law are computed from the quantiles of the law before truncation,
+        which is faster, and accurate in both tails.
         """
         return self.truncate or (-inf, inf)
 
     def kinks(self) -> tuple[float, ...]:
-        """Return the places, ends apart, where the density is not smooth."""
+        """Return the interior points at which the density is not smooth."""
         return ()
 
     @model_validator(mode="after")
     def _check_arguments(self) -> Self:
-        """Refuse arguments in the wrong order, an incomplete choice, and an empty truncation."""
+        """Reject arguments in the wrong order, incomplete argument sets, and empty truncations."""
         names = self._ascending
         values = [getattr(self, name) for name in names]
         if values and (values != sorted(values) or values[0] == values[-1]):

@@ -1,6 +1,6 @@
-"""The laws by name.
+"""Registry of the laws by name.
 
-To add one: its class, a file with a `uq.sampling.law.Law`, and a line here. Study files then accept
+To add a law, write a subclass of `uq.sampling.law.Law` and add a line here. Study files then accept
 it, and schema, templates, tables and documentation show it.
 """
 
@@ -38,7 +38,7 @@ LAWS: dict[str, type[Law]] = {
 
 
 def law_of(entry: Any) -> Law:
-    """Return the law that a study file states.
+    """Return the law from an entry of a study file.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def law_of(entry: Any) -> Law:
 
 
 def any_law() -> TypeAdapter[Law]:
-    """Return pydantic's type of all laws registered so far."""
+    """Return the pydantic type adapter of all registered laws."""
     return _one_of(tuple(LAWS.values()))
 
 

@@ -1,7 +1,8 @@
-"""Levels: which rows of a sample share the value of an input.
+"""Levels of nested sampling: the rows of a sample that share the value of an input.
 
-A sample consists of units, a unit of repeats. An input on the level ``shared`` has one value in all
-rows of a sample, on the level ``own`` one in each unit, on the level ``chance`` one in each repeat.
+A sample consists of units, and a unit of repeats. An input on the level ``shared`` has one value in
+all rows of a sample. On the level ``own`` it has one value in each unit, and on the level
+``chance`` one value in each repeat.
 """
 
 from collections.abc import Sequence
@@ -24,20 +25,20 @@ MAX_ROWS_OF_A_SAMPLE = 1_000_000
 
 
 def coordinates(levels: Sequence[str], units: int, repeats: int) -> NDArray[np.intp]:
-    """Return the coordinate of a sample's point that gives each input of its rows.
+    """Return the index of the coordinate of a sample's point for each input of its rows.
 
     Parameters
     ----------
     levels : sequence of str
-        Of each of the d inputs.
+        Level of each of the d inputs.
     units, repeats : int
 
     Returns
     -------
     ndarray, shape (units * repeats, d)
-        The first row takes the first d coordinates, in the order of the inputs, so that a sample of
-        one row is a point of the plain design. Further units, then further repeats, take those
-        that follow.
+        The first row uses the first d coordinates, in the order of the inputs, so that a sample of
+        one row is a point of the plain design. Further units, then further repeats, use the
+        following coordinates.
     """
     return _coordinates(tuple(levels), units, repeats)
 

@@ -1,4 +1,4 @@
-"""Laws of listed values: choices, whole numbers, measured values or their histogram."""
+"""Laws of listed values: choices, integers, measured values or their histogram."""
 
 from functools import lru_cache
 from itertools import pairwise
@@ -15,20 +15,20 @@ from uq.text.numbers import counted
 Numbers = Annotated[tuple[float, ...], LIST]
 
 MAX_VALUES = 100_000
-"""Most values of an empirical law; more are as well described by a histogram."""
+"""Largest number of values of an empirical law; a histogram describes more values equally well."""
 
 
 class Steps(NamedTuple):
-    """A discrete distribution with the methods of `scipy.stats` that are used here.
+    """Discrete distribution with the methods of `scipy.stats` that are used here.
 
-    scipy's own compares each probability with each value.
+    It is faster than scipy's class, which compares each probability with each value.
 
     Attributes
     ----------
     values : ndarray, shape (k,)
         Ascending.
     cumulated : ndarray, shape (k,)
-        Probability up to and including each value, ending with 1.
+        Cumulative probability up to and including each value; the last entry is 1.
     """
 
     values: Floats
@@ -65,13 +65,13 @@ class Listed(Law):
     discrete: ClassVar[bool] = True
 
     def between(self, low: float, high: float) -> tuple[float, float] | None:
-        """Return the first and the last value between two ends, or None if there is none."""
+        """Return the first and last value within two limits; None if there is none."""
         values = self.frozen().values
         inside = values[(low <= values) & (values <= high)]
         return (float(inside[0]), float(inside[-1])) if len(inside) else None
 
     def nearest(self, x: Floats) -> Floats:
-        """Return the value nearest to each of x, which undoes rounding."""
+        """Return the listed value nearest to each x, which removes rounding errors."""
         values = self.frozen().values
         nearest = values[np.searchsorted((values[1:] + values[:-1]) / 2, x)]
         return np.asarray(nearest)
@@ -116,12 +116,12 @@ class IntegerRange(Listed):
         return scipy.stats.randint(low=self.lower, high=self.upper + 1)
 
     def between(self, low: float, high: float) -> tuple[float, float] | None:
-        """Return the first and the last whole number between two ends, or None."""
+        """Return the first and last integer within two limits; None if there is none."""
         first, last = max(np.ceil(low), self.lower), min(np.floor(high), self.upper)
         return (float(first), float(last)) if first <= last else None
 
     def nearest(self, x: Floats) -> Floats:
-        """Return the whole number nearest to each of x."""
+        """Return the integer nearest to each x."""
         return np.rint(x)
 
 
@@ -149,7 +149,7 @@ class Empirical(Listed):
 
 
 def values_problem(values: tuple[float, ...]) -> str | None:
-    """Return why values make no empirical law, or None."""
+    """Return the reason why values do not form an empirical law; None if they do."""
     if len(set(values)) < 2:
         return "needs at least two different values"
     if len(values) > MAX_VALUES:
@@ -186,5 +186,5 @@ class Histogram(Law):
         )
 
     def kinks(self) -> tuple[float, ...]:
-        """Return the ends of the bins."""
+        """Return the bin edges."""
         return self.edges

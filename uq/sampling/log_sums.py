@@ -1,4 +1,4 @@
-"""The law of a sum of independent terms, each a multiple of the logarithm of an input."""
+"""Distribution of a sum of independent terms, each a multiple of the logarithm of an input."""
 
 from functools import cached_property
 
@@ -11,7 +11,7 @@ from uq.sampling.law import Law
 from uq.sampling.truncation import cdf_within, ppf_within
 
 ACCURACY = 1e-10
-"""Largest error of the probability of a sum."""
+"""Largest absolute error of the distribution function of a sum."""
 
 _FARTHEST = 8.2  # standard normal quantile beyond which a probability is negligible
 _NODES = 96
@@ -28,15 +28,15 @@ class LogTerm:
     law : Law
         Continuous, of a positive quantity.
     bounds : tuple of float
-        On which the law is conditioned.
+        Bounds on which the law is conditioned.
     exponent : float
         Not zero.
 
     Attributes
     ----------
     breaks : ndarray, shape (k,)
-        Ascending; its ends, beyond which its probability is negligible, and the places between
-        them where its density is not smooth.
+        Ascending; the ends, beyond which the probability is negligible, and the interior points at
+        which the density is not smooth.
     """
 
     def __init__(self, law: Law, bounds: tuple[float, float], exponent: float):
@@ -74,10 +74,11 @@ class LogTerm:
 
 
 class Sum:
-    """The sum of a random number and a term independent of it.
+    """Sum of a random number and an independent term.
 
-    The probability is an integral over the quantiles of the term, by Gauss and Legendre's rule
-    between the places where the integrand is not smooth. It is tabulated as Chebyshev polynomials.
+    The distribution function is an integral over the quantiles of the term. It is computed by
+    Gauss-Legendre quadrature between the points at which the integrand is not smooth, and stored as
+    Chebyshev polynomials.
 
     Parameters
     ----------
@@ -129,7 +130,7 @@ class Sum:
         return np.asarray((low + high) / 2)
 
     def _pieces(self, nodes: int) -> list[tuple[float, float, Floats]]:
-        """Return ends and coefficients of polynomials, halved until each is accurate."""
+        """Return limits and coefficients of polynomials on intervals halved until accurate."""
         pieces = []
         waiting = [(low, high, 0) for low, high in zip(self.breaks, self.breaks[1:], strict=False)]
         test = np.array([-0.97, -0.31, 0.44, 0.99])
@@ -149,7 +150,7 @@ class Sum:
         return sorted(pieces, key=lambda piece: piece[0])
 
     def _exactly(self, value: Floats, nodes: int) -> Floats:
-        """Return the probability of less than each value, shape (k,), by quadrature."""
+        """Return the distribution function at each value, shape (k,), by quadrature."""
         kinks = value[:, None] - self._first.breaks
         breaks = self._second.breaks
         places = np.sort(
@@ -163,18 +164,18 @@ class Sum:
 
 
 Term = LogTerm | Sum
-"""A random number, with its `breaks`, its `moments`, and its probabilities and quantiles."""
+"""A random number with `breaks`, `moments`, distribution function and quantiles."""
 
 
 def normal_rule(z: Floats, nodes: int) -> tuple[Floats, Floats]:
-    """Return nodes of Gauss and Legendre's rule for the mean over a standard normal variable.
+    """Return Gauss-Legendre nodes and weights for the mean over a standard normal variable.
 
     Parameters
     ----------
     z : ndarray, shape (..., pieces + 1)
-        Ascending, the ends of pieces; the first and the last stand for infinity.
+        Ends of the pieces, ascending; the first and the last represent infinity.
     nodes : int
-        In each piece.
+        Number of nodes in each piece.
 
     Returns
     -------
@@ -189,7 +190,7 @@ def normal_rule(z: Floats, nodes: int) -> tuple[Floats, Floats]:
 
 
 def law_of_sum(terms: list[LogTerm]) -> Term:
-    """Return the law of a sum of independent terms, the widest of which is exact."""
+    """Return the distribution of a sum of independent terms; the widest term enters exactly."""
     widest, *others = sorted(terms, key=lambda term: -term.spread)
     total: Term = widest
     for term in others:

@@ -1,4 +1,4 @@
-"""Checks of values given by name for the parameters and settings of a model.
+"""Validation of named values for the parameters and settings of a model.
 
 Study files, ``uq simulate --set`` and the Python API share them.
 """
@@ -20,15 +20,15 @@ def unknown_name(kind: str, name: str, model: Model, names: tuple[str, ...]) -> 
 
 
 def parameter_problem(model: Model, name: str, value: Any) -> str | None:
-    """Return why a parameter cannot have this value, or None.
+    """Return the reason why a value is invalid for a parameter; None if it is valid.
 
     Parameters
     ----------
     model : Model
     name : str
-        Known or unknown.
+        Name of a parameter, which may be unknown.
     value : object
-        As given.
+        Value as given by the user.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def parameter_problem(model: Model, name: str, value: Any) -> str | None:
         return "must be a number"
     try:
         float(value)
-    except OverflowError:  # a whole number of 309 digits or more; infinity is written inf
+    except OverflowError:  # an integer of 309 digits or more; infinity is written inf
         return "must be a number"
     parameter = model.parameter(name)
     low, high = parameter.bounds
@@ -50,7 +50,7 @@ def parameter_problem(model: Model, name: str, value: Any) -> str | None:
 
 
 def bounds_of(parameter: Parameter) -> str:
-    """Return a parameter's bounds for an error line."""
+    """Return the bounds of a parameter as text for an error line."""
     low, high = parameter.bounds
     return f"{low!r} to {high!r} [{parameter.unit}]"
 
@@ -62,20 +62,20 @@ def setting_types(model: Model) -> dict[str, Any]:
 
 
 def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str, str]]:
-    """Build the settings of a model.
+    """Return the settings object of a model and the problems of the given values.
 
     Parameters
     ----------
     model : Model
     given : dict
-        Setting -> value as in a file.
+        Setting -> value as written in a file.
 
     Returns
     -------
     settings : object or None
-        None if anything is wrong.
+        None if there is a problem.
     problems : dict of str to str
-        Setting -> its problem; under ``""`` the problem of the combination.
+        Setting -> its problem; the key ``""`` is for problems of the combination.
     """
     types = setting_types(model)
     values, problems = {}, {}
@@ -85,7 +85,7 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
             continue
         with suppress(ValidationError):
             strict: TypeAdapter[Any] = TypeAdapter(types[name], config=ConfigDict(strict=True))
-            # A number stands for a word where the setting allows words such as nan and inf.
+            # A number represents a word if the setting allows words such as nan and inf.
             is_word = isinstance(value, float) and model.setting(name).choices
             values[name] = strict.validate_python(_frozen(str(value) if is_word else value))
         if name not in values or not _allowed(model, name, values[name]):
@@ -94,14 +94,14 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
         return None, problems
     try:
         return model.settings(**values), {}
-    except ValueError as error:  # of the model, about a combination of settings
+    except ValueError as error:  # raised by the model for a combination of settings
         return None, {"": one_line(error)}
 
 
 def fault_lines(
     label: str, given: Mapping[str, Any], problems: Mapping[str, str | None]
 ) -> list[str]:
-    """Return the problems of given values as error lines, each value named after the label."""
+    """Return the problems of given values as error lines, prefixed with the label."""
     return [
         f"{label}{name} = {given[name]!r}: {problem}" if name in given else problem
         for name, problem in problems.items()
@@ -110,7 +110,7 @@ def fault_lines(
 
 
 def _frozen(value: Any) -> Any:
-    """Return lists, also within lists, as tuples."""
+    """Return lists, including nested lists, as tuples."""
     return tuple(map(_frozen, value)) if isinstance(value, list | tuple) else value
 
 

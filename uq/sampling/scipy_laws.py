@@ -1,7 +1,7 @@
-"""The laws of an uncertain parameter, with scipy.stats only where it is needed.
+"""Continuous laws of an uncertain parameter; scipy.stats is imported only if a law needs it.
 
-Each law is a small frozen table, as in a study file, with its `scipy.stats` counterpart, or for the
-most common ones with one of `uq.sampling.scipy_laws`.
+Each law is a small frozen table, as in a study file. Its distribution functions come from
+`scipy.stats`, or for the most common laws from the classes of `uq.sampling.scipy_laws`.
 `uq.sampling.listed_values` has the laws of listed values, `uq.sampling.laws` all laws.
 """
 
@@ -20,17 +20,17 @@ _LOG_ROOT_2_PI = np.log(np.sqrt(2 * pi))
 
 
 class Elementary(ABC):
-    """A law whose values are a function of a standard normal or standard uniform variable."""
+    """Law of a function of a standard normal or standard uniform variable."""
 
     uniform: ClassVar[bool] = False
 
     @abstractmethod
     def score(self, x: Any) -> Any:
-        """Return the standard variable of values."""
+        """Return the standard score of each value."""
 
     @abstractmethod
     def value(self, z: Any) -> Any:
-        """Return the values of the standard variable."""
+        """Return the value of each standard score."""
 
     @abstractmethod
     def logpdf(self, x: Any) -> Any:
@@ -56,7 +56,7 @@ class Elementary(ABC):
 
 @dataclass(frozen=True)
 class NormalLaw(Elementary):
-    """Normal law of a mean and a standard deviation."""
+    """Normal law, by mean and standard deviation."""
 
     mean: float
     sd: float
@@ -73,7 +73,7 @@ class NormalLaw(Elementary):
 
 @dataclass(frozen=True)
 class LogNormalLaw(Elementary):
-    """Law whose logarithm is normal, of a median and the logarithm's standard deviation."""
+    """Lognormal law, by median and standard deviation of the logarithm."""
 
     median: float
     sigma: float
@@ -95,7 +95,7 @@ class LogNormalLaw(Elementary):
 
 @dataclass(frozen=True)
 class UniformLaw(Elementary):
-    """Uniform law of a lower end and a width."""
+    """Uniform law, by lower end and width."""
 
     uniform = True
 
@@ -115,7 +115,7 @@ class UniformLaw(Elementary):
 
 @dataclass(frozen=True)
 class LogUniformLaw(Elementary):
-    """Law whose logarithm is uniform, between two ends."""
+    """Log-uniform law between two ends."""
 
     uniform = True
 
@@ -191,7 +191,7 @@ class TruncatedNormal(Law):
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The ends of both truncations."""
+        """Limits of the intersection of both truncations."""
         lower, upper = super().ends
         return max(lower, self.lower), min(upper, self.upper)
 

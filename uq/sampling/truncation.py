@@ -1,4 +1,4 @@
-"""A law within the bounds of its parameter: whether it fits, and its quantiles given the bounds."""
+"""Laws truncated to the bounds of their parameter: validity, quantiles, probabilities, density."""
 
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -13,19 +13,19 @@ from uq.sampling.named_values import bounds_of
 from uq.sampling.scipy_laws import Normal, TruncatedNormal
 
 OUTSIDE_AT_MOST = 1e-6
-"""Probability that a law may have outside its parameter's bounds."""
+"""Largest probability of a law outside the bounds of its parameter."""
 
 TOO_EXTREME = "these numbers are too extreme to compute with; use others"
 
 _LEAST_KEPT = 1e-290
-"""A truncation that keeps less of its parent would need denormal numbers."""
+"""Smallest probability of a truncation interval; below it denormal numbers would be needed."""
 
 
 def ppf_within(law: Law, u: Floats, bounds: tuple[float, float]) -> Floats:
-    """Map the unit interval to a law conditioned on lying within bounds.
+    """Return quantiles of a law truncated to bounds.
 
-    The lower half goes through the distribution function, the upper half through the survival
-    function, so that both tails keep their relative accuracy.
+    The lower half uses the distribution function and the upper half the survival function, so that
+    both tails keep their relative accuracy.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def ppf_within(law: Law, u: Floats, bounds: tuple[float, float]) -> Floats:
 
 
 def ppf_between(law: Law, u: Floats, low: Floats, high: Floats) -> Floats:
-    """Map the unit interval to a law conditioned on ends that differ between rows.
+    """Return quantiles of a law truncated to limits that differ between rows.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def ppf_between(law: Law, u: Floats, low: Floats, high: Floats) -> Floats:
 
 
 def cdf_within(law: Law, x: Floats, bounds: tuple[float, float]) -> Floats:
-    """Return the probability up to and including x of a law conditioned on lying within bounds.
+    """Return the distribution function P(X <= x) of a law truncated to bounds.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def cdf_within(law: Law, x: Floats, bounds: tuple[float, float]) -> Floats:
 
 
 def cdf_between(law: Law, x: Floats, low: Floats, high: Floats) -> Floats:
-    """Return the probability up to and including x of a law conditioned on ends of each row.
+    """Return the distribution function P(X <= x) of a law truncated to limits of each row.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def cdf_between(law: Law, x: Floats, low: Floats, high: Floats) -> Floats:
 
 
 def cell_of(law: Law, u: Floats, bounds: tuple[float, float]) -> tuple[Floats, Floats]:
-    """Return the part of the unit interval that a discrete law maps to the same value.
+    """Return the subinterval of the unit interval that a discrete law maps to the same value.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def cell_of(law: Law, u: Floats, bounds: tuple[float, float]) -> tuple[Floats, F
     Returns
     -------
     below, up_to : ndarray, shape (n,)
-        The probabilities of less than the value of each u, and of no more.
+        P(X < x) and P(X <= x) for the value x of each u.
     """
     x = ppf_within(law, u, bounds)
     below, up_to = (cdf_within(law, end, bounds) for end in (np.nextafter(x, -np.inf), x))
@@ -112,7 +112,7 @@ def cell_of(law: Law, u: Floats, bounds: tuple[float, float]) -> tuple[Floats, F
 
 
 def log_density_between(law: Law, x: Floats, low: Any, high: Any) -> Floats:
-    """Return the logarithm of the density of a law conditioned on ends, -inf outside.
+    """Return the log density of a law truncated to limits; -inf outside.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def log_density_between(law: Law, x: Floats, low: Any, high: Any) -> Floats:
     Returns
     -------
     ndarray, shape (n,)
-        Of a discrete law, the logarithm of the probability of each value.
+        For a discrete law, the logarithm of the probability of each value.
     """
     to = _shares(law, *_tightened(law, low, high))
     with np.errstate(divide="ignore"):
@@ -137,27 +137,27 @@ def log_density_between(law: Law, x: Floats, low: Any, high: Any) -> Floats:
 
 
 def factor_ends(other: Any, bounds: tuple[float, float]) -> tuple[Any, Any]:
-    """Return the ends of a factor that keep its product with another parameter within bounds."""
+    """Return the limits of a factor that keep its product with another parameter within bounds."""
     ends = bounds[0] / other, bounds[1] / other
     return np.minimum(*ends), np.maximum(*ends)
 
 
 def factor_of(law: Law, product: Floats, other: Any) -> Floats:
-    """Return a factor from its product with another parameter, exactly where values are listed."""
+    """Return a factor from its product with another parameter; exact for listed values."""
     ratio = product / other
     return law.nearest(ratio) if isinstance(law, Listed) else ratio
 
 
 def support(law: Law, bounds: tuple[float, float]) -> tuple[float, float]:
-    """Return the smallest and the largest value that a row can have."""
+    """Return the support: the smallest and the largest possible value."""
     ends = ppf_within(law, np.array([2.0**-54, 1.0 - 2.0**-53]), bounds)
     return float(ends[0]), float(ends[1])
 
 
 class _Condition(NamedTuple):
-    """The range of a law, and the probability of its parent below and above either end.
+    """Truncation interval of a law, and the probability of its parent below and above each end.
 
-    Each is a number, or an array with one number per row.
+    Each field is a number, or an array with one number per row.
     """
 
     parent: Any
@@ -184,29 +184,29 @@ def _quantiles(to: _Condition, u: Floats) -> Floats:
 def _probabilities(to: _Condition, x: Floats) -> Floats:
     if np.all(to.below < 0.5):
         share = (to.parent.cdf(x) - to.below) / (to.not_above - to.below)
-    else:  # in the upper tail only the survival function has digits left
+    else:  # in the upper tail only the survival function is accurate
         share = (to.not_below - to.parent.sf(x)) / (to.not_below - to.above)
     return np.clip(np.where(x < to.low, 0.0, share), 0.0, 1.0)
 
 
-@lru_cache(maxsize=1024)  # making a scipy distribution costs more than a thousand quantiles
+@lru_cache(maxsize=1024)  # creating a scipy distribution takes longer than a thousand quantiles
 def _condition(law: Law, bounds: tuple[float, float]) -> _Condition:
     low, high = map(float, _tightened(law, *bounds))
-    if isinstance(law, Listed):  # rounding must not end between the values
+    if isinstance(law, Listed):  # rounded quantiles must coincide with listed values
         low, high = law.between(low, high) or (low, high)
     condition = _shares(law, low, high)
     return _Condition(condition.parent, *map(float, condition[1:]))
 
 
 def _tightened(law: Law, low: Any, high: Any) -> tuple[Any, Any]:
-    """Return the range of a law: given ends, tightened by its own truncation."""
+    """Return the intersection of the given limits and the law's own truncation."""
     lower, upper = law.ends
     return np.maximum(low, lower), np.minimum(high, upper)
 
 
 def _shares(law: Law, low: Any, high: Any) -> _Condition:
     parent = law.frozen()
-    # The lower end itself is inside, which matters where it has a probability of its own.
+    # The lower end is included, which matters if it has a positive probability.
     end = np.nextafter(low, -np.inf) if law.discrete else low
     with np.errstate(all="ignore"):
         shares = parent.cdf(end), parent.sf(end), parent.cdf(high), parent.sf(high)
@@ -214,7 +214,7 @@ def _shares(law: Law, low: Any, high: Any) -> _Condition:
 
 
 def law_problem(law: Law, parameter: Parameter) -> InputFault | None:
-    """Return why a law does not suit a parameter, or None.
+    """Return the fault of a law that is invalid for a parameter; None if it is valid.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def law_problem(law: Law, parameter: Parameter) -> InputFault | None:
     Returns
     -------
     InputFault or None
-        Its path is the argument at fault, or empty.
+        Its path is the invalid argument, or empty.
     """
     low, high = parameter.bounds
     bounds = f"the parameter's bounds, {bounds_of(parameter)}"
@@ -245,7 +245,7 @@ def law_problem(law: Law, parameter: Parameter) -> InputFault | None:
 
 
 def outside_share(law: Law, low: Any, high: Any) -> Any:
-    """Return the probability of a law, after its truncation, outside given ends.
+    """Return the probability of a law, after its own truncation, outside given limits.
 
     Parameters
     ----------

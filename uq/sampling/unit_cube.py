@@ -1,9 +1,9 @@
-"""Points that fill the unit cube: random, stratified, low-discrepancy, curves, trajectories.
+"""Sampling points of the unit cube: random, stratified, low-discrepancy, curves, trajectories.
 
-Each function draws points start..stop of each replicate, shape (stop - start, replicates, d), with
-the same bits for any start and stop. SALib draws Morris trajectories, and on request selects those
-that are far apart. Its search is slow beyond a dozen, so such a design consists of bundles of at
-most eight, each the best of four times as many.
+Each function draws points start..stop of each replicate, shape (stop - start, replicates, d). A
+point has the same bits for any start and stop. SALib draws Morris trajectories, and optionally
+selects a subset with large distances. Its search is slow beyond a dozen trajectories. Therefore the
+design consists of bundles of at most eight, each selected from four times as many.
 """
 
 from collections.abc import Callable
@@ -19,14 +19,14 @@ Points = NDArray[np.float64]
 
 
 def replicate_seed(seed: int, *keys: int) -> np.random.SeedSequence:
-    """Return the seed of one replicate: each (seed, replicate) has its own stream.
+    """Return the seed sequence of one replicate: each (seed, replicate) has its own stream.
 
     Parameters
     ----------
     seed : int
-        That of the study; 0 is a seed like any other.
+        Seed of the study; 0 is a valid seed.
     *keys : int
-        The replicate, and its part if parts are drawn one by one.
+        Replicate, and its part if parts are drawn separately.
 
     Returns
     -------
@@ -36,17 +36,17 @@ def replicate_seed(seed: int, *keys: int) -> np.random.SeedSequence:
 
 
 def generator(seed: int, *keys: int) -> np.random.Generator:
-    """Return a generator at the beginning of its stream; parameters as in `replicate_seed`."""
+    """Return a random generator at the start of its stream; parameters as in `replicate_seed`."""
     return np.random.default_rng(replicate_seed(seed, *keys))
 
 
 def inside(points: Points, smallest: float = 2.0**-54) -> Points:
-    """Move the corner cases 0 and 1 inside, where every law has a finite quantile."""
+    """Return points with 0 and 1 moved inside the unit interval, where quantiles are finite."""
     return np.clip(points, smallest, 1.0 - 2.0**-53, out=points)
 
 
 def splitmix64(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Take one step of SplitMix64, from states to numbers.
+    """Return the SplitMix64 output of each state.
 
     References
     ----------
@@ -63,7 +63,7 @@ _GAMMA = np.uint64(0x9E3779B97F4A7C15)
 
 
 def hashed(points: Points) -> NDArray[np.uint64]:
-    """Hash the coordinates of points, shape (n, d), into one state of SplitMix64 per point."""
+    """Return one SplitMix64 state per point: a hash of its coordinates, shape (n, d)."""
     state = np.zeros(len(points), np.uint64)
     for column in points.T:
         state = splitmix64(state) ^ np.ascontiguousarray(column).view(np.uint64)
@@ -77,7 +77,7 @@ def uniform(state: NDArray[np.uint64], number: NDArray[np.int64]) -> Points:
     ----------
     state : ndarray of uint64, shape (n,)
     number : ndarray of int, shape (n,)
-        Its place in the stream, from 0.
+        Index of the number in the stream, from 0.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def uniform(state: NDArray[np.uint64], number: NDArray[np.int64]) -> Points:
 
 
 def drawn_at_once(draw: Callable[[int, int, int, int], Points]) -> Callable[..., Points]:
-    """Cut parts from a design that can only be drawn as a whole: it is drawn once and kept."""
+    """Return a function that draws parts of a design, from one cached draw of all its points."""
 
     @lru_cache(maxsize=1)
     def whole(seed: int, replicates: int, d: int, samples: int) -> Points:
@@ -104,11 +104,11 @@ def drawn_at_once(draw: Callable[[int, int, int, int], Points]) -> Callable[...,
 
 
 MOST_OF_SOBOL = 21_201
-"""Dimensions that `scipy.stats.qmc.Sobol` has direction numbers for."""
+"""Largest dimension for which `scipy.stats.qmc.Sobol` has direction numbers."""
 
 
 def monte_carlo(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    """Draw independent points."""
+    """Return independent uniform points (plain Monte Carlo)."""
 
     def points(replicate: int) -> Points:
         bits = np.random.PCG64(replicate_seed(seed, replicate))
@@ -119,16 +119,16 @@ def monte_carlo(seed: int, replicates: int, d: int, samples: int, start: int, st
 
 
 def paths(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    """Draw paths between two independent points, one input after the other in random order."""
+    """Return paths between two independent points; inputs change one by one in random order."""
     points = monte_carlo(seed, replicates, 3 * d, samples, start, stop)
     first, last, order = np.split(points[:, :, None], 3, axis=-1)
-    step = np.argsort(np.argsort(order, axis=-1), axis=-1)  # at which each input changes
+    step = np.argsort(np.argsort(order, axis=-1), axis=-1)  # step at which each input changes
     return np.where(step < np.arange(d + 1)[:, None], last, first)
 
 
 @drawn_at_once
 def latin_hypercube(seed: int, replicates: int, d: int, samples: int) -> Points:
-    """Draw a part of a Latin hypercube."""
+    """Return a part of a Latin hypercube."""
     from scipy.stats import qmc
 
     engines = (qmc.LatinHypercube(d, rng=generator(seed, i)) for i in range(replicates))
@@ -136,20 +136,20 @@ def latin_hypercube(seed: int, replicates: int, d: int, samples: int) -> Points:
 
 
 def sobol(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    """Draw a part of a scrambled Sobol' sequence."""
+    """Return a part of a scrambled Sobol' sequence."""
 
     def points(engine: Any) -> Points:
         # scipy warns when the first draw is not a power of two; the design as a whole is one.
         n = stop - start
         first = engine.random(min(n, 1)) if start == 0 else engine.fast_forward(start).random(0)
         rest = engine.random(n - len(first))
-        return inside(np.concatenate([first, rest]), 2.0**-31)  # half of the last of 30 bits
+        return inside(np.concatenate([first, rest]), 2.0**-31)  # half of the last of the 30 bits
 
     return np.stack([points(engine) for engine in _sequences("Sobol", seed, replicates, d)], axis=1)
 
 
 def halton(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    """Draw a part of a scrambled Halton sequence."""
+    """Return a part of a scrambled Halton sequence."""
 
     def points(engine: Any) -> Points:
         engine.num_generated = start  # its fast_forward would compute all points before
@@ -161,7 +161,7 @@ def halton(seed: int, replicates: int, d: int, samples: int, start: int, stop: i
 
 
 def _sequences(name: str, seed: int, replicates: int, d: int) -> list[Any]:
-    """Return a sequence of `scipy.stats.qmc` for each replicate, at its start."""
+    """Return a `scipy.stats.qmc` sequence at its start, for each replicate."""
     scrambled = [_scrambled(name, seed, replicate, d) for replicate in range(replicates)]
     return [copy(engine).reset() for engine in scrambled]
 
@@ -179,15 +179,15 @@ def _unit_cube(d: int) -> dict[str, Any]:
 
 
 HARMONICS = 4
-"""Harmonics of the frequency of an input that count as its effect."""
+"""Number of harmonics of the frequency of an input that are attributed to it."""
 
 LEAST_POINTS = 4 * HARMONICS**2 + 1
-"""With fewer points on a curve, no frequency is left for the other inputs."""
+"""Minimum number of points on a curve; with fewer, no frequency remains for the other inputs."""
 
 
 @drawn_at_once  # the frequencies depend on the number of points
 def fast_curves(seed: int, replicates: int, d: int, samples: int) -> Points:
-    """Draw points start..stop of the curves of extended FAST, one curve per input.
+    """Return points start..stop of the curves of extended FAST, one curve per input.
 
     Returns
     -------
@@ -209,7 +209,7 @@ def fast_curves(seed: int, replicates: int, d: int, samples: int) -> Points:
 
 @drawn_at_once
 def random_balance(seed: int, replicates: int, d: int, samples: int) -> Points:
-    """Draw points start..stop of a random balance design: one curve, shuffled for each input.
+    """Return points start..stop of a random balance design: one curve, shuffled for each input.
 
     Returns
     -------
@@ -231,16 +231,16 @@ def random_balance(seed: int, replicates: int, d: int, samples: int) -> Points:
 
 
 LEVELS = 4
-"""Levels of each input."""
+"""Number of grid levels of each input."""
 
 TAIL = 0.005
-"""Probability below the lowest and above the highest level: a law may be unbounded."""
+"""Probability below the lowest and above the highest level, since a law may be unbounded."""
 
 STEP = (1 - 2 * TAIL) * LEVELS / (2 * (LEVELS - 1))
 """Step of an input, in probability."""
 
 POOL = 4
-"""Trajectories drawn for each that is chosen, where they are to lie far apart."""
+"""Trajectories drawn per selected trajectory, if they are selected for large distances."""
 
 _BUNDLE = 8
 
@@ -248,16 +248,16 @@ _BUNDLE = 8
 def morris_trajectories(
     seed: int, replicates: int, d: int, samples: int, start: int, stop: int, pool: int = 1
 ) -> Points:
-    """Draw trajectories start..stop of each replicate [1]_.
+    """Return Morris trajectories start..stop of each replicate [1]_.
 
-    All are independent, or, from a pool of several times as many, those that lie far apart [2]_,
-    [3]_. These favour the corners of the cube: with `POOL`, mean effects of the Ishigami function
-    are 45 % too large for x1 and 50 % too small for x3.
+    All trajectories are independent, or they are selected from a larger pool for large distances
+    [2]_, [3]_. The selection favours the corners of the cube: with `POOL`, mean effects of the
+    Ishigami function are 45 % too large for x1 and 50 % too small for x3.
 
     Returns
     -------
     ndarray, shape (stop - start, replicates, d + 1, d)
-        From the bundles that contain them.
+        Points of the trajectories, cut from the bundles that contain them.
 
     References
     ----------
@@ -286,7 +286,7 @@ def _bundle(seed: int, replicate: int, bundle: int, d: int, size: int, pool: int
     rng = generator(seed, replicate, bundle)
     best = size if pool > 1 else None
     levels = sample(_unit_cube(d), pool * size, LEVELS, optimal_trajectories=best, seed=rng)
-    # Exact thirds again: SALib's arithmetic leaves their last bits to chance.
+    # Restore exact thirds: SALib's arithmetic may change their last bits.
     steps = np.rint(levels * (LEVELS - 1)).reshape(size, d + 1, d)
     points: Points = TAIL + (1 - 2 * TAIL) * steps / (LEVELS - 1)
     points.setflags(write=False)

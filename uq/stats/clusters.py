@@ -1,4 +1,4 @@
-"""Rows that are not independent: several of each independent sample, or weighted together."""
+"""Clusters of dependent rows: several rows per independent sample, or jointly weighted rows."""
 
 from dataclasses import dataclass, replace
 from typing import Any, Self
@@ -9,30 +9,31 @@ from numpy.typing import ArrayLike, NDArray
 from uq.contract import Floats
 
 ENOUGH_SAMPLES = 8
-"""Samples in a group, where possible, from which a curve or ratio is estimated."""
+"""Preferred number of samples per group when a curve or ratio is estimated from groups."""
 
 MOST_GROUPS = 32
 
 
 @dataclass(frozen=True)
 class SharedInfluence:
-    """The law of an input that all units share, which all rows together have learnt.
+    """Influence of an estimated input law that all units share.
 
-    Each row weighs values of the input by what all rows say of them, so that an error of this law
-    is common to all. Its density is known up to 1 + e @ q: terms q that have mean 0, and errors e.
+    The law is estimated from all rows and weights the values of the input in each row. Its error is
+    therefore common to all rows. The density has the relative error 1 + e @ q, with terms q of mean
+    0 and errors e.
 
     Attributes
     ----------
     pulls : ndarray, shape (n, terms)
-        Of all rows: the errors are their means.
+        Influence of each of the n rows on the errors: the errors are the means of these columns.
     part : ndarray of int, shape (n,)
-        The independent part of each.
+        Independent part of each of the n rows.
     row : ndarray of int, shape (m,)
-        Which of these the rows at hand are.
+        Indices of the selected rows among all n rows.
     follows : ndarray, shape (m, terms)
-        The terms at the value of the input in each of them.
+        Terms q at the input value of each selected row.
     errors : ndarray, shape (n,), optional
-        Contribution of the law to the influence of each on the mean at hand.
+        Contribution of the law to the influence of each row on the estimated mean.
     """
 
     pulls: Floats
@@ -42,16 +43,17 @@ class SharedInfluence:
     errors: Floats | None = None
 
     def subset(self, rows: Any) -> "SharedInfluence":
-        """Return the same for a subset of the rows at hand."""
+        """Return the shared influence for a subset of the selected rows."""
         return replace(self, row=self.row[rows], follows=self.follows[rows])
 
     def going_with(self, joint: Floats) -> "SharedInfluence":
-        """Return the same for a mean of this covariance with the terms, not computed by row.
+        """Return the shared influence on a mean, given its covariance with the terms.
 
         Parameters
         ----------
         joint : ndarray, shape (terms,)
-            The weighted mean of the terms times what the numbers lie above their mean.
+            Weighted covariance of the terms and the numbers: the weighted mean of each term times
+            the deviation of the numbers from their mean.
         """
         return replace(self, errors=self.pulls @ joint)
 
@@ -61,7 +63,7 @@ class SharedInfluence:
         Parameters
         ----------
         influence : ndarray, shape (m,)
-            Of the rows at hand, were the law known.
+            Influence of the selected rows, computed as if the law were known exactly.
         """
         errors = self.errors
         if errors is None:
@@ -72,15 +74,15 @@ class SharedInfluence:
 
 
 class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
-    """The independent part of a design to which each row belongs, where samples have several rows.
+    """Cluster label of each row, where samples have several rows.
 
-    It stands for the replicate of each row: the sample, where samples are independent, else the
-    replicate that the sample belongs to.
+    It takes the place of the replicate of each row: the label is the sample if samples are
+    independent, otherwise the replicate to which the sample belongs.
 
     Attributes
     ----------
     samples : int
-        The number of samples: of independent things, at most.
+        Number of samples: an upper limit of the number of independent clusters.
     are_samples : bool
         Whether the parts are samples, not replicates of a design.
     together : SharedInfluence or None
@@ -98,7 +100,7 @@ class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
         are_samples: bool = True,
         together: SharedInfluence | None = None,
     ) -> Self:
-        """Mark the part of each row, shape (n,)."""
+        """Create an array of cluster labels, shape (n,)."""
         marked = np.asarray(part, dtype=np.int64).view(cls)
         marked.samples, marked.are_samples, marked.together = samples, are_samples, together
         return marked
@@ -110,7 +112,7 @@ class Clusters(np.ndarray[Any, np.dtype[np.int64]]):
         self.together = None
 
     def with_together(self, together: SharedInfluence) -> Self:
-        """Return the same parts with this dependence between them."""
+        """Return the same parts with this dependence attached."""
         parts = self.copy()
         parts.together = together
         return parts
@@ -135,8 +137,8 @@ def linearised_means(values: NDArray[Any], part: NDArray[np.integer]) -> Floats:
     Returns
     -------
     ndarray
-        The mean of all rows plus the influence of each part on it [1]_; where all parts have as
-        many rows, their own means.
+        Mean of all rows plus the influence of each part on it [1]_. If all parts have the same
+        number of rows, these are the means of the parts.
 
     References
     ----------
@@ -150,7 +152,7 @@ def linearised_means(values: NDArray[Any], part: NDArray[np.integer]) -> Floats:
 
 
 def dealt(part: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Deal rows into at most 32 groups of independent parts, for estimates other than means.
+    """Return the random group of each row: at most 32 groups, for estimates other than means.
 
     Parameters
     ----------

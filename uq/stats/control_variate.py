@@ -1,7 +1,7 @@
-"""Control variates: an estimate corrected by a correlated quantity of known mean.
+"""Control variates: estimates corrected by a correlated quantity of known mean.
 
-The mean of n rows is corrected by their error in a cheap quantity, whose mean is known from many
-more rows: m - b (c_n - c_M).
+The mean m of n rows is corrected by the error of a cheap quantity c in the same rows:
+m - b (c_n - c_M). The mean c_M is estimated from many more rows.
 """
 
 import numpy as np
@@ -13,22 +13,22 @@ from uq.stats.estimate import Estimate
 from uq.stats.quantile_functions import student
 
 FEWEST = 5
-"""With fewer hits, or misses, a control does not improve a share."""
+"""Fewest hits, and fewest misses, for which a share is corrected by a control variate."""
 
-_AGAINST = 5  # hits that count against a control
+_AGAINST = 5  # hits added against the control: its gain is reduced to k/(k + 5)
 
 
 def controlled_mean(
     values: Floats, kept: Mask, *, controls: Floats, many: Floats
 ) -> tuple[Estimate, float]:
-    """Estimate the mean of the values of rows that have one.
+    """Estimate a mean with control variates, over the rows that have a value.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Of independent rows; only those kept are used.
+        Values of independent rows; only kept rows are used.
     kept : ndarray of bool, shape (n,)
-        Where there is a value. The share of such rows is an estimate too: the mean is a ratio.
+        Mask of rows with a value. The share of these rows is also estimated: the mean is a ratio.
     controls : ndarray, shape (n, k)
         Cheap quantities of the same rows.
     many : ndarray, shape (M, k)
@@ -38,8 +38,8 @@ def controlled_mean(
     -------
     estimate : Estimate
     reduction : float
-        Variance of the plain estimate over that of this one: how many times more rows would be as
-        good.
+        Variance reduction factor against plain Monte Carlo: the factor by which the sample size
+        would have to increase for the same accuracy without the controls.
     """
     plain = values[kept].mean()
     n, k = len(values), controls.shape[1]
@@ -57,33 +57,35 @@ def controlled_mean(
 def controlled_share(
     hits: Mask, kept: Mask, *, control: Floats, many: Floats
 ) -> tuple[Estimate, float]:
-    """Estimate the share of hits among the rows kept, from hits of a cheap quantity.
+    """Estimate the share of hits among the rows kept, with one control variate.
 
     Parameters
     ----------
     hits, kept : ndarray of bool, shape (n,)
     control : ndarray, shape (n,)
-        Larger where a hit is likelier, or smaller; NaN where there is none.
+        Cheap quantity that increases, or decreases, with the probability of a hit; NaN if missing.
     many : ndarray, shape (M,)
         The same quantity of other independent rows.
 
     Returns
     -------
     estimate : Estimate
-        A hit of the control is a value beyond a limit that as many rows exceed as there are hits.
-        The interval is that of a share (`uq.stats.intervals.binomial_interval`) for the equivalent
-        number of independent plain rows. With fewer than `FEWEST` hits, or misses, the value of the
-        control is unknown, and the estimate is that of the plain rows.
+        A hit of the control is a value beyond a limit. The limit is chosen so that the control has
+        as many hits as the rows have.
+        The interval is binomial (`uq.stats.intervals.binomial_interval`) with the equivalent
+        number of independent plain rows. With fewer than `FEWEST` hits, or misses, the gain of the
+        control cannot be estimated, and the plain estimate is returned.
     reduction : float
         As in `controlled_mean`.
 
     Notes
     -----
-    Half a row is added to each of the four cases (hit or not, control beyond or not) where the
-    variance is estimated, as in [1]_ for two shares of the same rows: control and hits may agree in
-    every row by chance. The gain of the control, seen in the k hits alone, is reduced to k/(k + 5)
-    of its estimate. Measured with 300 rows, 5 to 18 hits expected and correlations of 0.5 to 0.999,
-    the intervals then cover the truth in 95 to 99 % of cases, without it in 91 to 96 %.
+    Control and hits may agree in every row by chance. Therefore the variance is estimated with half
+    a row added to each of the four cases (hit or not, control beyond or not), as in [1]_ for two
+    shares of the same rows. The estimated gain of the control rests on the k hits alone and is
+    reduced to k/(k + 5) of its estimate. Measured with 300 rows, 5 to 18 expected hits and
+    correlations of 0.5 to 0.999: the intervals cover the true value in 95 to 99 % of cases, and
+    without this reduction in 91 to 96 %.
 
     References
     ----------
@@ -113,7 +115,7 @@ def controlled_share(
 
 
 def _orientation(hits: Mask, control: Floats) -> float:
-    """Return 1 where hits go with large values of the control, -1 where with small ones."""
+    """Return 1 if hits are associated with large values of the control, -1 if with small ones."""
     if hits.all() or not hits.any():
         return 1.0
     ranks = scipy.stats.rankdata(control)
@@ -121,7 +123,7 @@ def _orientation(hits: Mask, control: Floats) -> float:
 
 
 def _limit(control: Floats, count: int) -> float | None:
-    """Return the limit that `count` values exceed, or None where none or all do."""
+    """Return the limit that `count` values exceed; None if no value or all values would."""
     if not 0 < count < len(control):
         return None
     near = np.partition(control, (-count - 1, -count))[[-count - 1, -count]]
@@ -129,10 +131,10 @@ def _limit(control: Floats, count: int) -> float | None:
 
 
 def _regressed(errors: Floats, controls: Floats, weight: Floats, many: int) -> tuple[Floats, float]:
-    """Return the best slope of errors on controls for `many` cheap rows, and the reduction.
+    """Return the optimal control coefficients for `many` cheap rows, and the variance reduction.
 
-    Variance n^-1 Var(e - b c) + M^-1 Var(b c) is least for the slope of regression times
-    M/(n + M), and is then Var(e)/n times 1 - R^2 M/(n + M).
+    The variance Var(e - b c) / n + Var(b c) / M is minimal if b is the regression slope times
+    M/(n + M). The minimum is Var(e)/n times 1 - R^2 M/(n + M).
     """
     total = weight.sum()
     e = errors - weight @ errors / total

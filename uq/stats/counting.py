@@ -1,4 +1,4 @@
-"""Counts of ended units: their law in a fleet, and bounds on the law behind them."""
+"""Counts of failed units: their distribution in a fleet, and bounds on the mixing distribution."""
 
 from collections.abc import Callable
 
@@ -14,15 +14,15 @@ _MOST_NUMBERS = 10_000_000
 
 
 def more_than(ended: Floats, size: int, allow: int, are_alike: bool) -> Floats:
-    """Return the probability that more than `allow` of a fleet of a world's units have ended.
+    """Return the probability that more than `allow` units of a fleet have ended, by sample.
 
     Parameters
     ----------
     ended : ndarray, shape (samples, units, nodes)
-        As in `at_most`; of units that are alike, a single one.
+        As in `at_most`; a single unit per sample if the units are alike.
     size, allow : int
     are_alike : bool
-        Whether all units of a world have the same known probability.
+        Whether all units of a sample have the same known probability.
 
     Returns
     -------
@@ -36,18 +36,19 @@ def more_than(ended: Floats, size: int, allow: int, are_alike: bool) -> Floats:
 
 
 def turns(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
-    """Return the probability that each life of a world is the one after which too many have ended.
+    """Return the probability that each life of a sample is the life of its fleet.
 
-    Where all lives of a world are scaled alike, their order does not change: more than `allow` of
-    a fleet have ended when one of them has, whatever the scale.
+    The life of a fleet ends when more than `allow` of its units have ended. This is at the life of
+    one unit. If all lives of a sample are multiplied by a common factor, their order does not
+    change, and neither do these probabilities.
 
     Parameters
     ----------
     lives : ndarray, shape (samples, units, repeats)
-        NaN where there is none.
+        NaN for missing lives.
     size, allow : int
     are_alike : bool
-        Whether all lives of a world are the same.
+        Whether all units of a sample share one distribution of lives.
 
     Returns
     -------
@@ -69,7 +70,7 @@ def turns(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
 
 
 def _one_by_one(lives: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Return the order of the lives of each world, and the share of each unit ended with each life.
+    """Return the order of the lives of each sample, and the ended share of each unit at each life.
 
     Shapes (samples, lives) and (samples, units, lives).
     """
@@ -89,19 +90,19 @@ def _one_by_one(lives: Floats) -> tuple[NDArray[np.intp], Floats]:
 
 
 def at_most(ended: Floats, size: int, allow: int) -> Floats:
-    """Return the probability that at most `allow` of a fleet of a world's units have ended.
+    """Return the probability that at most `allow` units of a fleet have ended, by sample.
 
     Parameters
     ----------
     ended : ndarray, shape (samples, units, nodes)
-        Independent probabilities of the units; NaN for units that do not take part.
+        Probability that each unit has ended, independent between units; NaN for excluded units.
     size, allow : int
 
     Returns
     -------
     ndarray, shape (samples, nodes)
-        The mean over all fleets of `size` different units: unbiased for units drawn anew, where
-        any power of the units' mean probability is not. NaN where there are fewer units.
+        Mean over all fleets of `size` different units of the sample. It is unbiased for newly drawn
+        units; a power of the mean probability is not. NaN if a sample has fewer units.
     """
     samples, units, nodes = ended.shape
     rows = np.sort(np.moveaxis(ended, 1, 2).reshape(samples * nodes, units), axis=1)
@@ -117,7 +118,7 @@ def at_most(ended: Floats, size: int, allow: int) -> Floats:
 
 
 def _of_certain(ended: Floats, size: int, allow: int) -> Floats:
-    """Return `at_most` for units that have ended or have not: the hypergeometric law."""
+    """Return `at_most` by the hypergeometric law, for probabilities that are all 0 or 1."""
     units = ended.shape[1]
     count = np.arange(units + 1.0)
     in_fleet = np.arange(allow + 1.0)[:, None]
@@ -133,10 +134,10 @@ def _log_choose(n: Floats | float, k: Floats | float) -> Floats:
 
 
 def _of_any(ended: Floats, size: int, allow: int) -> Floats:
-    """Return `at_most` for units with any probabilities.
+    """Return `at_most` for arbitrary probabilities of the units.
 
-    The mean over fleets of r of the first m units, of which unit m is in a share r / m: a recursion
-    over m of weighted means, in which nothing cancels.
+    A recursion over m gives the mean over all fleets of r units out of the first m. Unit m belongs
+    to a share r / m of these fleets. The recursion takes weighted means, so that no digits cancel.
     """
     rows, units = ended.shape
     most = max(1, _MOST_NUMBERS // ((size + 1) * (allow + 1)))
@@ -157,7 +158,7 @@ def _of_any(ended: Floats, size: int, allow: int) -> Floats:
 
 
 _BELOW, _ABOVE = 0.15, 0.04
-"""Probability of a count up to, and beyond, the thresholds in a world at the point."""
+"""Largest probability of a count up to the lower threshold, and above the upper, at a point."""
 
 _MOST_COUNTS = 200
 
@@ -171,39 +172,40 @@ def mixing_bounds(
     part: Replicates,
     is_counted: bool,
 ) -> Callable[[float], tuple[float, float]]:
-    """Return confidence bounds on the share of worlds in which a unit's probability is larger.
+    """Return confidence bounds on the mixing distribution of the failure probability.
 
     Parameters
     ----------
     probability : ndarray, shape (k,)
         Points, ascending.
     mean : ndarray, shape (samples, nodes)
-        Share of the units of a world that ended.
+        Share of ended units in each sample.
     size : ndarray, shape (samples, nodes)
-        Independent units that scatter as much.
+        Effective number of independent units.
     weights : ndarray, shape (nodes,)
     worth : ndarray, shape (samples,)
-        Weights of worlds.
+        Weights of the samples.
     part : ndarray of int, shape (samples,), or None
     is_counted : bool
-        Whether each unit has ended or not, so that counts are binomial; otherwise about so.
+        Whether each unit has either ended or not: counts are then binomial, otherwise
+        approximately binomial.
 
     Returns
     -------
     callable
-        Probability -> lower and upper bound of the share of worlds whose probability is larger.
+        Probability -> lower and upper bound of the share of samples whose probability is larger.
 
     Notes
     -----
-    Let G be the law of the probability over worlds, F the share of worlds of which at most a share
-    c of the units ended, and K(p) the probability of this in a world of probability p. K falls, so
-    that for every G [1]_
+    Let G(p) be the share of samples with a probability of at most p. Let F be the share of samples
+    in which at most a share c of the units ended, and K(p) the probability of this event given p.
+    K decreases in p, so that for every G [1]_
 
         K(p) G(p) <= F <= G(p) + (1 - G(p)) K(p).
 
-    With the ends of the interval of F these bound G(p) on both sides, each from a c chosen by p
-    and the number of units alone. They are conservative: they allow for laws of two values, and are
-    close only with many units.
+    With the ends of the confidence interval of F, this bounds G(p) on both sides. The threshold c
+    of each bound is chosen from p and the number of units alone. The bounds are conservative: they
+    hold for two-point laws too, and are tight only with many units.
 
     References
     ----------
@@ -237,7 +239,7 @@ def mixing_bounds(
 
 
 def _ends(share: Floats, worth: Floats, part: Replicates) -> tuple[float, float]:
-    """Return the interval of a share of worlds, from 0 to 1 where none can be estimated."""
+    """Return the confidence interval of a share of samples; 0 to 1 if it cannot be estimated."""
     if np.ptp(worth) > 0 or not np.isin(share, (0.0, 1.0)).all():
         low, high = weighted_share(share, worth, part).numbers[1:]
     else:
@@ -253,7 +255,7 @@ def _at_most(
     step: float,
     is_counted: bool,
 ) -> Floats:
-    """Return P(a share of units up to a threshold ended), shape (probabilities, thresholds)."""
+    """Return P(ended share <= threshold | probability), shape (probabilities, thresholds)."""
     at_most = np.zeros((len(probability), len(threshold)))
     for weight, size in zip(often, sizes, strict=True):
         count = np.floor(threshold * size) if is_counted else threshold * size + step

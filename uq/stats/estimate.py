@@ -1,4 +1,4 @@
-"""One number with its interval, or the reason why there is none, and its text."""
+"""Estimate: a number with its confidence interval, or the reason why it is missing."""
 
 from dataclasses import dataclass, replace
 from math import floor, inf, isfinite, log10, nan
@@ -8,19 +8,19 @@ from uq.text.numbers import TO_THESE_DIGITS, number, percent, percent_interval
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A number with its 95 % interval.
+    """A number with its 95 % confidence interval.
 
     Attributes
     ----------
     value, low, high : float
-        NaN where it is not known; infinite where it is known to be.
+        NaN if the number cannot be estimated; infinite if it is known to be infinite.
     reason : str
         Why the value or its interval is missing; "" if neither is.
     assumes : str
-        What they assume beyond the rows; "" if nothing.
+        Assumptions behind the numbers beyond the rows themselves; "" if there are none.
     beyond : tuple of str
-        Which of the three are infinite only because rows are censored: they lie beyond the
-        horizon.
+        Names of the numbers that are infinite only because rows are censored: their true values
+        exceed the horizon.
     """
 
     value: float = nan
@@ -32,17 +32,17 @@ class Estimate:
 
     @property
     def numbers(self) -> tuple[float, float, float]:
-        """Value and both ends."""
+        """Value, lower end and upper end."""
         return self.value, self.low, self.high
 
     @property
     def finite(self) -> "Estimate":
-        """The same, with NaN for every number that is not finite."""
+        """The estimate with NaN in place of every number that is not finite."""
         value, low, high = (number if isfinite(number) else nan for number in self.numbers)
         return Estimate(value, low, high, self.reason, self.assumes)
 
     def over(self, size: float) -> "Estimate":
-        """Return the same in units of this size."""
+        """Return the estimate divided by the size of a unit."""
         value, low, high = (number / size for number in self.numbers)
         return replace(self, value=value, low=low, high=high)
 
@@ -58,7 +58,7 @@ NOTHING = Estimate()
 def value_text(
     estimate: Estimate, end: str = "value", per: float = 1.0, resolution: float = 0.0
 ) -> str:
-    """Return one number of an estimate, or why there is none.
+    """Return one number of an estimate as text, or the reason why it is missing.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def value_text(
     per : float
         Divisor of the number: the length of a unit.
     resolution : float
-        Of the digits, as `number` takes it, before the division.
+        Resolution of the digits, as in `number`, before the division.
 
     Returns
     -------
@@ -82,13 +82,13 @@ def value_text(
 
 
 def interval_text(estimate: Estimate, per: float = 1.0, resolution: float = 0.0) -> str:
-    """Return the ends of an interval; "" where neither is known, or both are never."""
+    """Return the ends of an interval as text; "" if both are unknown, or both are "never"."""
     ends = [value_text(estimate, end, per, resolution) for end in ("low", "high")]
     return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
 
 
 def failed_bounds_text(bounds: Estimate | None, per: float = 1.0) -> str:
-    """Return the bounds with failed rows at best and at worst; "" if no row failed."""
+    """Return the best-case and worst-case bounds for failed rows; "" if no row failed."""
     if bounds is None:
         return ""
     low, high = (value_text(bounds, end, per) for end in ("low", "high"))
@@ -98,7 +98,7 @@ def failed_bounds_text(bounds: Estimate | None, per: float = 1.0) -> str:
 
 
 def rounded_text(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
-    """Return an estimate for a sentence, rounded to its accuracy, and its interval.
+    """Return an estimate, rounded to the accuracy that its interval supports, and the interval.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def rounded_text(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
     Returns
     -------
     tuple of str
-        The interval is "" where there is none.
+        Value and interval as text; the interval is "" if it is missing.
     """
     value, low, high = estimate.numbers
     if not (isfinite(value) and estimate.has_interval and high > low):
@@ -126,7 +126,7 @@ def _rounded(value: float, decimals: int) -> str:
 
 
 def share_text(estimate: Estimate) -> str:
-    """Return a share in per cent, with its interval."""
+    """Return a share in per cent with its interval, as text."""
     text = percent(estimate.value)
     if not estimate.has_interval:
         return text

@@ -1,4 +1,4 @@
-"""Estimates as JSON: a number that is not finite is null, with the reason beside it."""
+"""Estimates as JSON: a number that is not finite becomes null, and the reason is stored with it."""
 
 from math import isfinite
 from typing import Any
@@ -7,22 +7,22 @@ from uq.stats.estimate import Estimate
 
 
 def number(value: float) -> float | None:
-    """Return a number, None for one that is not finite."""
+    """Return the number, or None if it is not finite."""
     return float(value) if isfinite(value) else None
 
 
 def numbers(estimate: Estimate) -> dict[str, float | None]:
-    """Return value and interval."""
+    """Return value and interval as a dictionary."""
     return {"value": number(estimate.value), **ends(estimate)}
 
 
 def ends(estimate: Estimate) -> dict[str, float | None]:
-    """Return the interval alone."""
+    """Return the interval alone as a dictionary."""
     return {"low": number(estimate.low), "high": number(estimate.high)}
 
 
 def whole(estimate: Estimate) -> dict[str, Any]:
-    """Return value and interval, why any of the three is null, and their assumptions."""
+    """Return value and interval, the reason for each null, and the assumptions."""
     entry: dict[str, Any] = numbers(estimate)
     for name in ("value", "low", "high"):
         entry |= flag("" if name == "value" else f"{name}_", estimate, name)
@@ -34,14 +34,14 @@ def whole(estimate: Estimate) -> dict[str, Any]:
 
 
 def flag(prefix: str, estimate: Estimate, name: str) -> dict[str, bool]:
-    """Flag a life that never ends, or ends beyond the horizon."""
+    """Return flags for a life that never ends, or exceeds the horizon."""
     if getattr(estimate, name) != float("inf"):
         return {}
     return {f"{prefix}{'censored' if name in estimate.beyond else 'never'}": True}
 
 
 def failed(bounds: Estimate | None) -> dict[str, Any]:
-    """Return the ends of an interval with the failed rows at best and at worst."""
+    """Return the best-case and worst-case bounds for failed rows as a dictionary."""
     entry: dict[str, Any] = {}
     if bounds is not None:
         for name in ("low", "high"):

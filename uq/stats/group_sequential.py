@@ -1,8 +1,8 @@
-"""The confidence of each of several checks, so that the interval at which a run stops holds.
+"""Group-sequential confidence levels: the level of each interim check that preserves coverage.
 
-An interval that is recomputed is narrow by chance at some point, and a run stops at it. How often
-it then misses depends on what its width says of its error; docs/statistics.md has the reasoning
-and what was measured.
+An interval that is recomputed after each check is narrow by chance at some check, and the run stops
+there. The resulting loss of coverage depends on the correlation between the width of the interval
+and its error. docs/statistics.md explains the method and reports the measured coverage.
 """
 
 from functools import lru_cache
@@ -15,30 +15,30 @@ from uq.stats.quantile_functions import student
 from uq.stats.roots import root
 
 MOST_AT_STAKE = 2
-"""Successive checks at which a run of independent rows may stop, for a given half-width."""
+"""Most successive checks at which independent rows may stop, for a given half-width."""
 
 _INDEPENDENT = (0.95, 0.970_614)
-"""Confidence of one and of two intervals, the second from twice the rows, both of which hold in
-95 % of cases."""
+"""Confidence level of each interval for a joint coverage of 95 %: of one interval, and of two, the
+second of which uses twice the rows."""
 
-_STEPS = 32  # of the grid from one check to the next
-_SMALLEST, _LARGEST = 1e-6, 16.0  # spread of replicates over what is expected
+_STEPS = 32  # grid steps between two checks
+_SMALLEST, _LARGEST = 1e-6, 16.0  # standard deviation of replicates over its expectation
 
 
 def of_independent_rows(checks: int) -> float:
-    """Return the confidence of each check of independent rows.
+    """Return the confidence level of each interim check of independent rows.
 
     Parameters
     ----------
     checks : int
-        Each from twice the rows of the one before.
+        Number of checks; each uses twice the rows of the previous one.
 
     Returns
     -------
     float
-        By Pocock's rule [1]_ for at most `MOST_AT_STAKE` checks: whatever decides at which of these
-        a run stops, the interval holds in 95 % of cases. From a few hundred rows on, the width is
-        known well enough that no other check has a chance.
+        Level by Pocock's rule [1]_ for at most `MOST_AT_STAKE` checks: the interval covers the true
+        value in 95 % of cases, whichever of these checks stops the run. From a few hundred rows
+        on, the width varies so little that the run cannot stop at any other check.
 
     References
     ----------
@@ -50,22 +50,22 @@ def of_independent_rows(checks: int) -> float:
 
 @lru_cache(maxsize=32)
 def of_replicates(replicates: int, checks: int) -> float:
-    """Return the confidence of each check of replicates, by Student's t.
+    """Return the confidence level of each interim check of replicates, by Student's t.
 
     Parameters
     ----------
     replicates : int
         At least two.
     checks : int
-        Each from twice the samples of the one before.
+        Number of checks; each uses twice the samples of the previous one.
 
     Returns
     -------
     float
-        Such that the interval at the stop misses in 5 % of cases for the worst half-width. Errors
-        are normal, so that the scatter of replicates says nothing of the error of their mean, and a
-        run stops where they scatter little by chance; each check has a chance of its own, and
-        errors fall no more slowly than with the root of the samples.
+        Level at which the interval at the stop misses the true value in 5 % of cases, for the worst
+        half-width. Assumptions: errors are normal, so that the scatter of replicates is independent
+        of the error of their mean; the run stops when the scatter is small by chance; checks are
+        independent; errors decrease at least with the square root of the number of samples.
     """
     freedom = replicates - 1
     if checks == 1:
@@ -80,11 +80,11 @@ def of_replicates(replicates: int, checks: int) -> float:
 
 
 def _wrong(wide: float, freedom: int, checks: int) -> float:
-    """Return the largest probability, over half-widths, that the interval at the stop misses.
+    """Return the non-coverage probability of the interval at the stop, for the worst half-width.
 
-    The spread over its expectation is v at each check, sqrt(chi^2 / freedom); a run stops at the
-    first v below a limit, which grows by sqrt(2) from check to check, and misses there with
-    probability 2 Phi(-wide v).
+    At each check the ratio of the scatter to its expectation is v = sqrt(chi^2 / freedom). The run
+    stops at the first v below a limit, which grows by sqrt(2) from check to check. The interval
+    then misses with probability 2 Phi(-wide v).
     """
     step = np.log(2) / 2 / _STEPS
     v = np.exp(np.arange(np.log(_SMALLEST), np.log(_LARGEST), step))
@@ -93,9 +93,9 @@ def _wrong(wide: float, freedom: int, checks: int) -> float:
     misses = np.cumsum(missed_in_step)
     total, goes_on = np.zeros_like(v), np.ones_like(v)
     for check in range(checks):
-        # The limit of a later check, for each limit at the first.
+        # Limit at this check, for each limit at the first check.
         limit = np.minimum(np.arange(len(v)) + check * _STEPS, len(v) - 1)
-        ends_anyway = check == checks - 1  # however wide the interval is
+        ends_anyway = check == checks - 1  # the last check ends the run, whatever the width
         total += goes_on * (misses[-1] if ends_anyway else misses[limit])
         goes_on *= 1 - below[limit]
     return float(total.max())

@@ -1,4 +1,4 @@
-"""Importance weights: smoothed, with a diagnosis of whether they can be trusted."""
+"""Pareto-smoothed importance weights and their reliability diagnostics."""
 
 from math import ceil, inf
 from typing import NamedTuple
@@ -12,15 +12,15 @@ from uq.stats.tails import DISTINCT, generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
 DOUBTFUL = 0.7
-"""Shape of the largest weights above which their mean cannot be trusted, however many rows."""
+"""Pareto shape k above which a weighted mean is unreliable for any sample size."""
 
 _NEGLIGIBLE = 1e-3
 _LITTLE = 0.01
-_SAME = 1e-9  # relative difference of numbers that only rounding tells apart
+_SAME = 1e-9  # relative difference up to which numbers are equal but for rounding
 
 
 def effective_rows(numbers: Floats) -> float:
-    """Return the number of rows of equal weight that are worth as much [1]_.
+    """Return Kish's effective sample size of weighted rows [1]_.
 
     References
     ----------
@@ -32,22 +32,22 @@ def effective_rows(numbers: Floats) -> float:
 
 
 class Smoothed(NamedTuple):
-    """Weights of rows.
+    """Smoothed importance weights of rows, with their diagnostics.
 
     Attributes
     ----------
     weights : ndarray, shape (n,)
-        Of mean 1.
+        Weights, scaled to mean 1.
     k : float
-        Shape of the generalised Pareto law of the largest; -inf where all weights are equal.
+        Shape of the generalised Pareto law of the largest weights; -inf if all weights are equal.
     rows : int
         Number of independent rows, or of samples of several rows.
     effective : float
-        Kish's number of equal ones that are worth as much.
+        Kish's effective sample size.
     most : float
-        The largest weight that a row can have.
+        Upper limit of the weight of a row.
     impossible : str
-        Why there are none, or "".
+        Reason why rows cannot be weighted; "" if they can.
     """
 
     weights: Floats
@@ -59,26 +59,26 @@ class Smoothed(NamedTuple):
 
     @property
     def refusal(self) -> str:
-        """Why they cannot be trusted, or ""."""
+        """Reason why the weights are unreliable; "" if they are reliable."""
         return self.impossible or refusal(self.k, self.rows)
 
 
 def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) -> Smoothed:
     """Return Pareto-smoothed weights [1]_.
 
-    Weights that are known to be bounded, so that no row can carry more than a hundredth of all,
-    stay as they are: the variance of their mean is below a hundredth of its square, and their k not
-    above 0, whatever the largest look like. Where samples have several rows, that of all rows of a
-    sample is smoothed: samples are independent, and rows in proportion are as they were.
+    Weights are not smoothed if a known bound keeps every row below a hundredth of the total weight.
+    The variance of their mean is then below a hundredth of its square, and k is at most 0, whatever
+    the largest observed weights are. If samples have several rows, the weights of samples are
+    smoothed, since samples are independent; proportions within a sample do not change.
 
     Parameters
     ----------
     log_weights : ndarray, shape (n,)
-        Not all -inf.
+        Logarithms of the weights; not all -inf.
     part : ndarray of int, shape (n,), optional
-        The independent part of each row (`uq.stats.intervals`).
+        Independent part of each row (`uq.stats.intervals`).
     most : float, optional
-        The largest weight that a row can have, of weights of mean 1.
+        Upper limit of the weight of a row, for weights of mean 1.
 
     Returns
     -------
@@ -114,39 +114,38 @@ def no_weights(rows: int, why: str) -> Smoothed:
 
 
 def carries_little(most: float, rows: int) -> bool:
-    """Whether no row can carry more than a hundredth of the weight of all rows."""
+    """Whether no row can carry more than a hundredth of the total weight."""
     return rows_to_carry_little(most) <= rows
 
 
 def rows_to_carry_little(most: float) -> float:
-    """Return the number of rows from which none can carry more than a hundredth of all weight."""
+    """Return the sample size at which no row can exceed a hundredth of the total weight."""
     return most / _LITTLE
 
 
 def of_samples(weights: Floats) -> Smoothed:
-    """Return the weights of samples, as inspections left them."""
+    """Return posterior weights of samples after inspections, with their diagnostics."""
     return Smoothed(weights, tail_shape(weights), len(weights), effective_rows(weights))
 
 
 def quality(weights: Smoothed | None) -> dict[str, float]:
-    """Return the effective number of rows, and the Pareto shape of their weights."""
+    """Return the effective sample size and the Pareto shape of the weights."""
     return {} if weights is None else {"effective_rows": weights.effective, "pareto_k": weights.k}
 
 
 def worth_in_words(weights: Smoothed) -> str:
-    """Return the number of samples and their effective number in words."""
+    """Return the number of samples and the effective sample size in words."""
     return f"{weights.rows} samples, worth {weights.effective:.0f} of equal weight"
 
 
 def tail_shape(numbers: Floats) -> float:
-    """Return the shape of the generalised Pareto law of the largest numbers [1]_.
+    """Return the Pareto shape k: the generalised Pareto shape of the largest numbers [1]_.
 
-    The numbers are not negative.
-
-    Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
-    where all others are equal, or the largest are a few values that many rows have, as under
-    listed values; infinite where there are too few. Rows that share the value at which the tail
-    begins are left out of it, as under a limit that is integrated on a grid.
+    The numbers are not negative. Numbers below a thousandth of the largest count as zero and do not
+    belong to the tail. The shape is -inf if all other numbers are equal, or if the largest numbers
+    take few values, each shared by many rows, as for laws of listed values. It is infinite if there
+    are too few numbers. Rows tied at the value at which the tail begins are excluded from the tail,
+    as for a limit that is integrated on a grid.
 
     References
     ----------
@@ -165,7 +164,7 @@ def tail_shape(numbers: Floats) -> float:
     excess = counted
     if len(counted) > count:
         above = counted[-count:][counted[-count:] > counted[-count - 1]]
-        if 2 * len(above) > count:  # few would hide behind rows of one value
+        if 2 * len(above) > count:  # otherwise ties would leave too few rows in the tail
             excess = above - counted[-count - 1]
     if np.ptp(excess) == 0:
         return -inf if len(excess) > 1 else inf
@@ -173,7 +172,7 @@ def tail_shape(numbers: Floats) -> float:
 
 
 def largest_shape(rows: int) -> float:
-    """Return the largest shape with which so many rows can be trusted."""
+    """Return the largest Pareto shape at which this sample size is reliable."""
     return min(DOUBTFUL, 1 - 1 / np.log10(rows)) if rows > 10 else -inf
 
 
@@ -184,7 +183,7 @@ HOPELESS = (
 
 
 def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
-    """Return why weights with this shape cannot be trusted, or ""."""
+    """Return the reason why weights of this shape are unreliable; "" if they are reliable."""
     most = largest_shape(rows)
     if k <= most or k == -inf:
         return ""
@@ -206,12 +205,12 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
 
 
 def largest_share(weights: Floats) -> float:
-    """Return the share of all weight that the heaviest has."""
+    """Return the share of the largest weight in the total weight."""
     return float(weights.max() / weights.sum())
 
 
 def too_large(share: float, rows: int) -> str:
-    """Return why a row may not carry this share of all weight, or ""."""
+    """Return the reason why the share of one row is too large; "" if it is acceptable."""
     if share <= _LITTLE:
         return ""
     more = ceil(rows * (share / _LITTLE - 1))
@@ -219,7 +218,7 @@ def too_large(share: float, rows: int) -> str:
 
 
 def per_sample(numbers: Floats, part: Replicates) -> Floats:
-    """Return the sum of each independent sample of several rows, else the numbers themselves."""
+    """Return the sum over each independent sample, or the numbers if rows are independent."""
     if not (isinstance(part, Clusters) and part.are_samples):
         return numbers
     _, place = np.unique(np.asarray(part), return_inverse=True)
@@ -227,7 +226,7 @@ def per_sample(numbers: Floats, part: Replicates) -> Floats:
 
 
 def _are_few_values(ascending: Floats, count: int) -> bool:
-    """Whether the largest are fewer than ten values, each of which ten rows or more have."""
+    """Whether the largest numbers take fewer than ten values, each shared by ten or more rows."""
     close = _SAME * ascending[-1]
     largest = ascending[ascending >= ascending[-min(count, len(ascending))] - close]
     sizes = np.diff(np.flatnonzero(np.r_[True, np.diff(largest) > close, True]))
@@ -244,7 +243,7 @@ def _with_smooth_tail(raw: Floats) -> Floats:
     order = np.argsort(raw, kind="stable")
     tail, cut = order[-count:], raw[order[-count - 1]]
     excess = raw[tail] - cut
-    if not excess[0] > np.finfo(float).eps * raw.max():  # lost in rounding: no law of a tail
+    if not excess[0] > np.finfo(float).eps * raw.max():  # lost in rounding: no tail to fit
         return raw
     shape, scale = generalised_pareto(excess)
     k = shrunk(shape, count)

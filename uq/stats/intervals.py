@@ -1,11 +1,12 @@
-"""Intervals of 95 % for means and shares.
+"""Confidence intervals of means and proportions, 95 % by default.
 
-Rows are either independent (``replicate`` is None) or belong to independent replicates of a
-design, given as the replicate's number for each row. Formulas for independent rows are wrong for
-the rows of a Latin hypercube or a low-discrepancy sequence, whose estimates scatter less; there
-only the scatter between replicates shows the error. Where samples have several rows, samples stand
-for replicates (`uq.stats.clusters.Clusters`). Where there is no interval (one replicate, too
-few rows, replicates that agree to the last bit) it is ``(nan, nan)``, never one of zero width.
+Rows are either independent (``replicate`` is None) or belong to independent replicates of a design;
+``replicate`` then gives the number of the replicate of each row. Formulas for independent rows are
+wrong for the rows of a Latin hypercube or a low-discrepancy sequence, whose estimates scatter less;
+their error is estimated from the scatter between replicates. If samples have several rows, samples
+take the place of replicates (`uq.stats.clusters.Clusters`). If no interval exists (one replicate,
+too few rows, replicates that agree to the last bit), the result is ``(nan, nan)``, never an
+interval of zero width.
 """
 
 from typing import Any
@@ -20,15 +21,15 @@ from uq.stats.jumps import beyond_jumps
 from uq.stats.quantile_functions import normal, student
 
 FEW = 20
-"""Below so many hits, or misses, an interval is exact.
+"""With fewer hits, or fewer misses, the exact interval of Clopper and Pearson is used.
 
-Wilson's lower end lies above the true share in up to 16 % of samples where one hit is seen, in up
+Wilson's lower end exceeds the true share in up to 16 % of samples if one hit is observed, and in up
 to 4 % from twenty hits on.
 """
 
 
 def are_few(share: Floats | float, rows: Floats | float) -> Mask:
-    """Whether there are few hits or few misses; false where the share is unknown."""
+    """Whether there are few hits or few misses; false if the share is NaN."""
     rarer = np.minimum(share, 1 - np.asarray(share)) * rows
     return np.asarray(np.round(rarer, 6) < FEW)
 
@@ -36,7 +37,7 @@ def are_few(share: Floats | float, rows: Floats | float) -> Mask:
 def exact_interval(
     share: Floats | float, rows: Floats | float, confidence: float
 ) -> tuple[Floats, Floats]:
-    """Return the interval of Clopper and Pearson [1]_ of a share, or of several.
+    """Return the exact binomial (Clopper-Pearson) interval [1]_ of one or several shares.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def exact_interval(
     """
     tail = (1 - confidence) / 2
     hits = np.asarray(share * rows, dtype=float)
-    # Rounding must not leave a fraction of a hit where there was none.
+    # Rounding must not turn zero hits into a fraction of a hit.
     whole = np.round(hits)
     hits = np.where(np.abs(hits - whole) <= 1e-9, whole, hits)
     misses = np.maximum(rows - hits, 0.0)
@@ -73,12 +74,12 @@ CONFIDENCE = 0.95
 ONE_ROW = "a single row does not show any scatter"
 
 ROUNDING = 64 * np.finfo(float).eps
-"""Values are equal but for rounding if they differ by less than this part of the largest."""
+"""Relative difference below which values are equal but for rounding."""
 
 Replicates = NDArray[np.integer] | None
 
 Ends = tuple[Any, Any]
-"""Lower and upper end of an interval, or of several (two arrays); NaN where unknown."""
+"""Lower and upper end of an interval, or of several (two arrays); NaN if unknown."""
 
 UNKNOWN: Ends = (np.nan, np.nan)
 
@@ -89,9 +90,10 @@ def is_constant(values: Floats) -> bool:
 
 
 def sized(values: Floats) -> tuple[Floats, float]:
-    """Return values divided by a power of two near the largest, and this power.
+    """Return the values scaled by a power of two near the largest, and this power.
 
-    Then neither squares nor fourth powers leave the range of numbers, and no digit is lost.
+    Squares and fourth powers of the scaled values neither overflow nor underflow. Scaling by a
+    power of two loses no digits.
     """
     largest = np.abs(values).max(where=np.isfinite(values), initial=0.0)
     size = 2.0 ** int(np.clip(np.frexp(largest)[1], -1000, 1000))
@@ -99,7 +101,7 @@ def sized(values: Floats) -> tuple[Floats, float]:
 
 
 def scatter_interval(value: float, estimates: Floats, confidence: float = CONFIDENCE) -> Ends:
-    """Return ``value`` +- t s / sqrt(R) from independent estimates of the same number.
+    """Return Student's interval ``value`` +- t s / sqrt(R) from R independent estimates.
 
     Parameters
     ----------
@@ -123,7 +125,7 @@ def scatter_interval(value: float, estimates: Floats, confidence: float = CONFID
 
 
 def log_scatter_interval(estimates: Floats) -> Ends:
-    """Return the interval of a small probability from independent estimates of it.
+    """Return the log-scale confidence interval of a small probability from independent estimates.
 
     Parameters
     ----------
@@ -133,8 +135,8 @@ def log_scatter_interval(estimates: Floats) -> Ends:
     Returns
     -------
     low, high : float
-        Student's interval of the logarithms about the mean; if some estimates are zero, that of
-        the estimates themselves, not below zero.
+        Student's interval of the logarithms about the mean. If any estimate is zero, Student's
+        interval of the estimates themselves, not below zero.
     """
     mean = float(estimates.mean())
     if (estimates > 0).all():
@@ -147,7 +149,7 @@ def log_scatter_interval(estimates: Floats) -> Ends:
 def mean_interval(
     values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
 ) -> Ends:
-    """Return the interval of the mean.
+    """Return the confidence interval of a mean.
 
     Parameters
     ----------
@@ -159,9 +161,9 @@ def mean_interval(
     Returns
     -------
     low, high : float
-        Student's t [1]_ of the rows, or of the means of the replicates, with the error of jumps
-        that these do not show (`uq.stats.jumps`). Of independent rows or samples it allows for two
-        more outliers (`beyond_outliers`).
+        Student's t interval [1]_ from the rows, or from the means of the replicates, which is
+        widened for the error of jumps (`uq.stats.jumps`). For independent rows or samples the
+        interval is widened for two more outliers (`beyond_outliers`).
 
     References
     ----------
@@ -178,12 +180,12 @@ def mean_interval(
 
 
 def parts_are_independent(replicate: Replicates) -> bool:
-    """Whether rows, or samples of several rows, are independent, not parts of an even design."""
+    """Whether rows, or samples of several rows, are independent rather than a stratified design."""
     return replicate is None or isinstance(replicate, Clusters) and replicate.are_samples
 
 
 def beyond_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) -> Ends:
-    """Return an interval that allows for more estimates as far out as the farthest.
+    """Return an interval widened for further outliers as extreme as the most extreme estimate.
 
     Parameters
     ----------
@@ -192,33 +194,34 @@ def beyond_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) 
         Student's interval of the estimates about the value.
     estimates : ndarray, shape (n,)
     more : int, optional
-        How many more.
+        Number of further outliers.
 
     Returns
     -------
     low, high : float
-        The end on the side of the farther outlier is moved: of skewed laws, samples without
-        outliers scatter too little, and their mean lies too far from that side.
+        The interval with the end on the side of the farther outlier moved outwards. A sample of a
+        skewed law that lacks outliers underestimates the scatter, and its mean is biased away from
+        that side.
     """
     move = outlier_shift(value, estimates, more)
     return ends[0] + min(move, 0.0), ends[1] + max(move, 0.0)
 
 
 def outlier_shift(value: float, estimates: Floats, more: int = 2) -> float:
-    """Return by how much more estimates as far out as the farthest on one side move a mean."""
+    """Return the shift of a mean by further outliers as extreme as the most extreme estimate."""
     return float(more * ((estimates.max() - value) - (value - estimates.min())) / len(estimates))
 
 
 def interval_of_mean(
     value: float, values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
 ) -> Ends:
-    """Return the interval of an estimate whose error is the error of a mean.
+    """Return the confidence interval of an estimate from its influence values.
 
     Parameters
     ----------
     value : float
     values : ndarray, shape (n,)
-        The rows, or the influence of each on the estimate, plus a constant.
+        The rows themselves, or the influence of each row on the estimate plus a constant.
     replicate : ndarray of int, shape (n,), optional
     confidence : float, optional
 
@@ -238,7 +241,7 @@ def interval_of_mean(
 def share_interval(
     hits: Mask, replicate: Replicates = None, confidence: float = CONFIDENCE
 ) -> Ends:
-    """Return the interval of a share of rows.
+    """Return the confidence interval of a proportion of rows.
 
     Parameters
     ----------
@@ -249,10 +252,11 @@ def share_interval(
     Returns
     -------
     low, high : float
-        Wilson's score interval [1]_. For replicates, with the effective number of independent
-        rows and Student's t in place of the normal quantile [2]_. Where hits or misses are few, the
-        interval of Clopper and Pearson (`uq.stats.intervals`), which is conservative; replicates
-        then count for at most their rows, since few hits show little of their scatter.
+        Wilson's score interval [1]_. For replicates it uses the effective number of independent
+        rows, and Student's t in place of the normal quantile [2]_. If hits or misses are few, it is
+        the interval of Clopper and Pearson (`uq.stats.intervals`), which is conservative. The
+        effective number of rows is then at most the number of rows, since the scatter of replicates
+        cannot be estimated from few hits.
 
     References
     ----------
@@ -277,7 +281,7 @@ def share_interval(
 
 
 def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:
-    """Return the interval of a share from an effective number of rows: exact where hits are few.
+    """Return the interval of a share from an effective sample size: exact if hits are few.
 
     Parameters
     ----------
@@ -296,7 +300,7 @@ def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE)
 
 
 def wilson_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:
-    """Return Wilson's interval of a share from an effective number of independent rows."""
+    """Return Wilson's score interval of a share from an effective sample size."""
     return _floats(_wilson(share, rows, normal(upper_probability(confidence))))
 
 
@@ -308,22 +312,22 @@ def scattered_share_interval(
     rows: Floats | float | None = None,
     samples: int | None = None,
 ) -> Ends:
-    """Return the interval of a share, or of several, from the estimates of replicates.
+    """Return the interval of one or several shares from the estimates of replicates.
 
     Parameters
     ----------
     share : float or ndarray, shape (k,)
         The estimate from all rows together.
     estimates : ndarray, shape (R,) or (R, k)
-        By replicate.
+        One estimate per replicate.
     scatter_at : float or ndarray, optional
-        The share whose scatter `estimates` show, if not `share` itself.
+        The share of which `estimates` are estimates, if it differs from `share`.
     confidence : float, optional
     rows : float or ndarray, shape (k,), optional
-        Of all replicates together: an upper limit of the effective number where hits are few.
+        Number of rows of all replicates: the upper limit of the effective number if hits are few.
     samples : int, optional
-        Where samples have several rows, their number: the limit if nothing shows how the rows of
-        one agree. Hits are then counted in effective rows.
+        Number of samples, if samples have several rows: the effective number if the correlation
+        within samples cannot be estimated. Hits are then counted in effective rows.
 
     Returns
     -------
@@ -335,7 +339,7 @@ def scattered_share_interval(
     if count < 2:
         return np.full(np.shape(share), np.nan), np.full(np.shape(share), np.nan)
     variance = estimates.var(axis=0, ddof=1) / count
-    # A survival curve may reach 0 while that of a censored replicate does not.
+    # A survival curve may reach 0 while the curve of a censored replicate does not.
     estimable = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
     worth = at * (1 - at) / np.where(estimable, variance, np.nan)
     wide = student(upper_probability(confidence), count - 1)
@@ -350,7 +354,7 @@ def scattered_share_interval(
 
 
 def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
-    """Return the mean of each replicate that has rows; of samples see `linearised_means`."""
+    """Return the mean of each replicate that has rows; for samples see `linearised_means`."""
     if isinstance(replicate, Clusters):
         return linearised_means(values, replicate)
     counts = np.bincount(replicate)
@@ -366,8 +370,8 @@ def replicates_of_some(replicate: Replicates, rows: NDArray[Any]) -> Replicates:
 def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Ends:
     """Return Wilson's interval; scipy's takes only integer numbers of rows.
 
-    The bounds solve (1 + w) x^2 - (2 p + w) x + p^2 = 0 with w = z^2 / rows. One comes from the
-    other by the product of the roots, so that a share of 0 or 1 has a bound of exactly 0 or 1.
+    The bounds solve (1 + w) x^2 - (2 p + w) x + p^2 = 0 with w = z^2 / rows. The second root is
+    computed from the product of the roots, so that a share of 0 or 1 has a bound of exactly 0 or 1.
     """
     w = z**2 / rows
     high = (share + w / 2 + np.sqrt(w * share * (1 - share) + w**2 / 4)) / (1 + w)
@@ -376,7 +380,7 @@ def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Ends:
 
 
 def upper_probability(confidence: float = CONFIDENCE) -> float:
-    """Return the probability below the upper end of an interval with equal tails."""
+    """Return the quantile level of the upper end of an equal-tailed interval."""
     return 0.5 + confidence / 2
 
 

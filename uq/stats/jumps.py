@@ -1,8 +1,9 @@
-"""The error that jumps leave in the mean of designs that spread evenly, which no scatter shows.
+"""Error of a mean from discontinuities in stratified designs, which replicates do not show.
 
-Every replicate of such a design has one row in each of n strata of an input. Where a function jumps
-within a stratum, this row lies before or behind the jump; if on the same side in all replicates,
-the jump adds nothing to their scatter, however large its error.
+Every replicate of such a design has one row in each of n strata of an input. If a function jumps
+within a stratum, this row lies on one side of the jump. If it lies on the same side in all
+replicates, the jump adds nothing to the scatter between replicates, although its error may be
+large.
 """
 
 from functools import cached_property
@@ -17,30 +18,30 @@ from numpy.typing import ArrayLike, NDArray
 from uq.contract import Floats
 
 DEGREE = 6
-"""Of the polynomials in the rank of each input that describe what is smooth."""
+"""Degree of the polynomials, in the rank of each input, that describe the smooth part."""
 
 ROWS_PER_TERM = 12
-"""Rows that each of their terms needs."""
+"""Rows required per polynomial term."""
 
 MOST_TERMS = 100
 
 MOST_ROWS = 16384
-"""Of all replicates together, that show the jumps."""
+"""Largest number of rows, over all replicates, that are searched for jumps."""
 
 MOST_JUMPS = 16
 
 SURE = 5.0
-"""Standard errors from which a step is a jump, not the noise of other inputs."""
+"""Standard errors above which a step is a jump rather than noise from other inputs."""
 
 NOISE = 2.0
-"""Standard errors up to which a step may be noise: a jump may be as large."""
+"""Standard errors below which a jump cannot be distinguished from noise."""
 
 WIDEST = 16
-"""Neighbours on one side of a place are no more than the rows over this."""
+"""Divisor of the number of rows: the quotient limits the number of neighbours on each side."""
 
 
 class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
-    """The replicate of each row of a design that spreads evenly, with the inputs of the rows.
+    """Replicate of each row of a stratified design, with the inputs of the rows.
 
     Attributes
     ----------
@@ -50,7 +51,7 @@ class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
     inputs: Floats
 
     def __new__(cls, replicate: ArrayLike, inputs: Floats) -> Self:
-        """Mark the replicate of each row, shape (n,)."""
+        """Create an array of replicate labels, shape (n,), with the inputs."""
         marked = np.asarray(replicate, dtype=np.int64).view(cls)
         marked.inputs = inputs
         return marked
@@ -60,7 +61,7 @@ class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
         self.inputs = np.empty((0, 0))
 
     def __getitem__(self, rows: Any) -> Any:
-        """Return the replicates of a subset; of all rows the array itself, with its neighbours."""
+        """Return the replicates of a subset; for all rows the array itself, with its neighbours."""
         if isinstance(rows, np.ndarray) and rows.dtype == bool and rows.all():
             return self
         chosen = super().__getitem__(rows)
@@ -70,12 +71,12 @@ class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
 
     @cached_property
     def neighbours(self) -> "Neighbours":
-        """The order of the rows along each input, and the polynomials of smooth functions."""
+        """Order of the rows along each input, and the polynomials of the smooth part."""
         return Neighbours(np.asarray(self), self.inputs)
 
 
 class Neighbours:
-    """The order of rows along each input, and the polynomials that describe what is smooth.
+    """Order of the rows along each input, and polynomials that describe the smooth part.
 
     Attributes
     ----------
@@ -83,10 +84,10 @@ class Neighbours:
     rows : ndarray of int, shape (m,)
         The first rows of each replicate, at most `MOST_ROWS` together.
     order : ndarray of int, shape (d, m)
-        These rows along each input.
+        Order of these rows along each input.
     norms : ndarray, shape (m,)
-        Of a step from each place on, less the polynomials of its input; infinite where hardly
-        anything is left.
+        Norm of the residual of a unit step at each place, after the polynomials of its input are
+        removed; infinite if the residual is negligible.
 
     Parameters
     ----------
@@ -109,9 +110,9 @@ class Neighbours:
         scores = 2 * (np.argsort(self.order, axis=1) + 0.5).T / max(n, 1) - 1
         terms = np.column_stack([_polynomials(scores), (x - x.mean(axis=0)) / x.std(axis=0)])
         basis, triangle = np.linalg.qr(terms)
-        # An input that repeats others leaves but rounding.
+        # An input that repeats others leaves only rounding errors.
         self._basis: Floats = basis[:, np.abs(np.diag(triangle)) > 1e-9 * np.sqrt(n)]
-        # Of each step, what no polynomial of its input describes; alike for all inputs.
+        # Residual of each step from the polynomials of its input; the same for all inputs.
         along, _ = np.linalg.qr(_polynomials((2 * np.arange(n)[:, None] + 1) / max(n, 1) - 1))
         behind = np.cumsum(along[::-1], axis=0)[::-1]
         left = np.arange(n, 0, -1) - np.square(behind).sum(axis=1)
@@ -119,12 +120,12 @@ class Neighbours:
         self.norms: Floats = np.sqrt(np.where(left > least, left, np.inf))
 
     def without_smooth(self, values: Floats) -> Floats:
-        """Return the residuals of values that rows have."""
+        """Return the residuals of the values of rows from the fitted polynomials."""
         return values - self._basis @ (self._basis.T @ values)
 
 
 def _polynomials(scores: Floats) -> Floats:
-    """Return Legendre polynomials of each score, and products of two, as the rows allow."""
+    """Return Legendre polynomials of each score, and products of two if there are enough rows."""
     n, d = scores.shape
     most = min(n // ROWS_PER_TERM, MOST_TERMS)
     terms = [np.ones(n)]
@@ -145,25 +146,26 @@ def _polynomials(scores: Floats) -> Floats:
 def beyond_jumps(
     value: float, ends: tuple[float, float], values: Floats, replicate: Any, confidence: float
 ) -> tuple[float, float]:
-    """Return the interval of a mean with the error of jumps that scatter does not show.
+    """Return the interval of a mean, widened for the error of jumps.
 
     Parameters
     ----------
     value : float
-        The mean, or a number that differs from it as its error does.
+        The mean, or an estimate with the same error.
     ends : tuple of float
-        From the scatter of replicates.
+        Interval from the scatter of replicates.
     values : ndarray, shape (n,)
-        Of rows, whose mean it is.
+        Values of the rows, or their influence on the estimate.
     replicate : ndarray of int, shape (n,), optional
     confidence : float
 
     Returns
     -------
     low, high : float
-        As it is, unless `replicate` has the inputs of the rows. Half-widths are the root of the sum
-        of squares of those of the scatter, and of each jump J times -log((1 - confidence) / 2) / n:
-        the share of rows beyond a jump that n rows miss with the probability of one tail.
+        The interval is unchanged unless `replicate` has the inputs of the rows. Otherwise each
+        half-width is the root of a sum of squares: of the half-width from the scatter, and of
+        J times -log((1 - confidence) / 2) / n for each jump J. The latter factor is the share of
+        rows beyond a jump that n rows miss with the probability of one tail.
     """
     if not isinstance(replicate, EvenReplicates) or not replicate.inputs.size:
         return ends
@@ -176,22 +178,23 @@ def beyond_jumps(
 
 
 def jumps(values: Floats, neighbours: Neighbours) -> Floats:
-    """Return the jumps of a function of inputs, and last the largest that noise may hide.
+    """Return the detected jumps of a function of the inputs, then the largest undetectable jump.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Of rows.
+        Values of the function at the rows.
     neighbours : Neighbours
-        Of the same rows.
+        Neighbours of the same rows.
 
     Returns
     -------
     ndarray
-        Steps along inputs, the one that explains most first, of what polynomials of the inputs and
-        the steps before leave (orthogonal matching pursuit [1]_). None is larger than the
-        difference between the means of its neighbours on both sides, of as many as show it best, in
-        the residual or in the values, whichever is larger.
+        Steps along inputs in the residual after polynomials of the inputs and previous steps. The
+        step that explains most comes first (orthogonal matching pursuit [1]_). A step is at most
+        the difference between the means of its neighbours on both sides, in the residual or in the
+        values, whichever is larger. The difference is the least over the number of neighbours. The
+        last entry is the largest jump that noise may hide.
 
     References
     ----------
@@ -214,7 +217,7 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
             sizes.append(NOISE * error)
             break
         size = float(explained[which, place] / neighbours.norms[place])
-        # Near an end polynomials follow a step, and hardly anything of it is left in the residual.
+        # Near an end polynomials follow a step, so that little of it remains in the residual.
         heights = (
             _step(response[neighbours.order[which]], place, neighbours, noise)
             for response in (residual, values)
@@ -233,7 +236,7 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
 
 
 def _step(ordered: Floats, place: int, neighbours: Neighbours, noise: float) -> float:
-    """Return the step between the neighbours of a place, of the number of them that shows least."""
+    """Return the step between the neighbours of a place, least over the number of neighbours."""
     least, width = np.inf, max(neighbours.replicates, 2)
     while width <= max(len(ordered) // WIDEST, 2) and width <= min(place, len(ordered) - place):
         step = ordered[place : place + width].mean() - ordered[place - width : place].mean()

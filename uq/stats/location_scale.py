@@ -1,8 +1,8 @@
-"""Maximum likelihood for Weibull and lognormal lives, some of them censored, many samples at once.
+"""Maximum likelihood for censored Weibull and lognormal lives, for many samples at once.
 
-The logarithm of such a life is m + s w with w of a known law (the smallest extreme value, the
-normal one). In a = m/s and b = 1/s the likelihood is concave [1]_, so that Newton's method finds
-its only maximum. scipy fits one sample at a time, too slowly for the refits of a bootstrap.
+The logarithm of such a life is m + s w, where w follows a known law (the smallest extreme value or
+the normal law). The log-likelihood is concave in a = m/s and b = 1/s [1]_, so that Newton's method
+finds its only maximum. scipy fits one sample at a time, which is too slow for a bootstrap.
 
 References
 ----------
@@ -25,15 +25,15 @@ _CLOSE = 1e-9
 
 @dataclass(frozen=True)
 class Family:
-    """A law of lives whose logarithm has a location and a scale.
+    """A log-location-scale family of lives.
 
     Attributes
     ----------
     name : str
-        Of the law of w in `scipy.stats`.
+        Name of the law of w in `scipy.stats`.
     slopes : callable
-        ``slopes(w, ended)`` -> first and second derivative by w of the log-likelihood: of the
-        density where `ended`, of the survival function elsewhere.
+        ``slopes(w, ended)`` -> first and second derivative of the log-likelihood with respect to w:
+        of the log density where `ended`, otherwise of the log survival function.
     """
 
     name: str
@@ -63,20 +63,20 @@ FAMILIES = {"weibull": Family("gumbel_l", _extreme), "lognormal": Family("norm",
 
 
 def fit(family: Family, x: Floats, ended: Mask) -> tuple[Floats, Floats]:
-    """Find location and scale of the greatest likelihood, for each sample.
+    """Return the maximum likelihood estimates of location and scale of each sample.
 
     Parameters
     ----------
     family : Family
     x : ndarray, shape (k, n)
-        Logarithms of lives; of at least two that differ in each sample.
+        Logarithms of lives; each sample has at least two different values.
     ended : ndarray of bool, shape (k, n)
-        False where the life was censored at x.
+        False if the life was censored at x.
 
     Returns
     -------
     location, scale : ndarray, shape (k,)
-        NaN where Newton's method did not converge.
+        NaN if Newton's method did not converge.
     """
     centre, spread = x.mean(axis=1, keepdims=True), x.std(axis=1, keepdims=True)
     z = (x - centre) / spread
@@ -102,20 +102,21 @@ def fit(family: Family, x: Floats, ended: Mask) -> tuple[Floats, Floats]:
 
 
 def anderson_darling(share: Floats, ended: Mask) -> Floats:
-    """Return the distance of the estimate of Kaplan and Meier from a law, tails included.
+    """Return the Anderson-Darling statistic of censored samples.
 
     Parameters
     ----------
     share : ndarray, shape (k, n)
-        The law's distribution function at the lives or where they were censored, ascending in each
-        sample.
+        The law's distribution function at the lives, or at the times of censoring; ascending in
+        each sample.
     ended : ndarray of bool, shape (k, n)
 
     Returns
     -------
     ndarray, shape (k,)
-        n times the integral of (F_n - F)^2 / (F (1 - F)) over F, up to the last row; without
-        censored rows the statistic of Anderson and Darling [1]_.
+        n times the integral of (F_n - F)^2 / (F (1 - F)) over F up to the last row, where F_n is
+        the Kaplan-Meier estimate. Without censored rows it is the statistic of Anderson and
+        Darling [1]_.
 
     References
     ----------
@@ -134,5 +135,5 @@ def anderson_darling(share: Floats, ended: Mask) -> Floats:
 
     total = (integral(u) - integral(start)).sum(axis=1)
     last = u[:, -1]
-    # Beyond the last row F_n is 1 if that row ended; else it is unknown, and nothing is added.
+    # Beyond the last row F_n is 1 if that row ended; otherwise F_n is unknown: nothing is added.
     return n * (total + np.where(ended[:, -1], -np.log(last) - (1 - last), 0.0))

@@ -1,4 +1,4 @@
-"""Mean and standard deviation with their intervals, where they exist."""
+"""Mean and standard deviation with confidence intervals, if the tails allow them."""
 
 from typing import NamedTuple
 
@@ -31,21 +31,21 @@ from uq.stats.tails import Tail, heavier_tail
 def corrected_mean_interval(
     values: Floats, replicate: NDArray[np.integer], confidence: float = CONFIDENCE
 ) -> Ends:
-    """Return the interval of the mean, corrected for the skewness of its error.
+    """Return the skewness-corrected confidence interval of a mean from replicates (Hall 1992).
 
     Parameters
     ----------
     values : ndarray, shape (n,)
         Finite.
     replicate : ndarray of int, shape (n,)
-        Whose means are not all equal.
+        Replicate of each row; the means of replicates are not all equal.
     confidence : float, optional
 
     Returns
     -------
     low, high : float
-        `hall_interval` of the means of the replicates, which allows for jumps that they do not
-        show (`uq.stats.jumps`), and for one more row as far out as the farthest.
+        `hall_interval` of the means of the replicates, widened for undetected jumps
+        (`uq.stats.jumps`) and for one more row as extreme as the most extreme.
     """
     values, size = sized(values)  # squares neither overflow nor vanish
     means = by_replicate(values, replicate)
@@ -57,7 +57,7 @@ def corrected_mean_interval(
 
 
 def hall_interval(estimates: Floats, confidence: float = CONFIDENCE) -> Ends:
-    """Return the interval of the mean of independent estimates, corrected for their skewness.
+    """Return the skewness-corrected confidence interval of a mean (Hall 1992).
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ def hall_interval(estimates: Floats, confidence: float = CONFIDENCE) -> Ends:
     Returns
     -------
     low, high : float
-        By the cubic transformation of Student's t whose skewness vanishes [1]_; without skewness
-        it is Student's interval.
+        Interval from Hall's cubic transformation, which removes the skewness of Student's t [1]_.
+        Without skewness it is Student's interval.
 
     References
     ----------
@@ -95,41 +95,41 @@ def hall_interval(estimates: Floats, confidence: float = CONFIDENCE) -> Ends:
 
 
 def _untransformed(x: float, skewness: float) -> float:
-    """Return t whose transform t + s t^2 / 3 + s^2 t^3 / 27 + s / 6 is x."""
-    if abs(skewness) < 1e-6:  # where the inverse loses digits and hardly changes x
+    """Return the inverse of Hall's transform: t such that t + s t^2/3 + s^2 t^3/27 + s/6 = x."""
+    if abs(skewness) < 1e-6:  # the inverse loses digits here, and the correction is negligible
         return x
     return float(np.cbrt(1 + skewness * (x - skewness / 6)) - 1) * 3 / skewness
 
 
 SUSPECT = 0.4
-"""A k above which the intervals carry a caution. Samples of 200 rows of Pareto's law with index 1.5
-seldom show less, those of an exponential law hardly ever more."""
+"""Tail shape k above which the intervals carry a caution. Samples of 200 rows from Pareto's law
+with index 1.5 rarely have a smaller k; samples from an exponential law hardly ever a larger one."""
 
 ENOUGH_ROWS = 200
-"""Independent rows from which the standard deviation has an interval. Of fewer, too many hold no
-value far out, and scatter too little: of a lognormal law with sigma 1, the intervals of 50 rows
-cover 87 %, of 100 rows 90 %, of 200 rows 93 %. Whether they are given must not depend on the
+"""Fewest independent rows for an interval of the standard deviation. Smaller samples often lack
+extreme values and underestimate the scatter. For a lognormal law with sigma 1 the coverage is 87 %
+with 50 rows, 90 % with 100 rows and 93 % with 200 rows. The criterion must not depend on the
 values."""
 
 OUTLYING_SQUARES = 3
-"""More rows as far from the mean as the farthest for which the interval of a standard deviation
-allows. Squares are more skewed than values: of 200 lognormal rows with sigma 1 it covers 90 % with
-two, as means have, and 93 % with three."""
+"""Number of further outliers, as extreme as the most extreme row, for which the interval of a
+standard deviation is widened. Squares are more skewed than values: for 200 lognormal rows with
+sigma 1 the coverage is 90 % with two, the number used for means, and 93 % with three."""
 
-_FEWEST = 8  # rows that show how squares scatter
+_FEWEST = 8  # fewest rows from which the scatter of squares is estimated
 
 
 class Moments(NamedTuple):
-    """Mean and standard deviation of an output.
+    """Estimated mean and standard deviation of an output.
 
     Attributes
     ----------
     mean, sd : Estimate
-        With the reason where the tail rules out the number, or only its interval.
+        Each includes the reason if the tail rules out the number or its interval.
     tail : Tail or None
-        The heavier one.
+        The heavier tail.
     caution : str or None
-        Why the intervals may be too narrow.
+        Reason why the intervals may be too narrow.
     """
 
     mean: Estimate
@@ -141,7 +141,7 @@ class Moments(NamedTuple):
 def moments(
     values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
 ) -> Moments:
-    """Estimate mean and standard deviation.
+    """Estimate the mean and the standard deviation.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def moments(
             no_sd = f"needs {ENOUGH_ROWS} rows: fewer seldom show how far the tails reach"
     if len(values) == 1:
         no_mean = no_sd = ONE_ROW
-    mean = float(values[0] if np.ptp(values) == 0 else values.mean())  # else it may be rounded
+    mean = float(values[0] if np.ptp(values) == 0 else values.mean())  # no rounding if all equal
     return Moments(
         Estimate(
             mean if has_mean else np.nan,
@@ -200,7 +200,7 @@ _REMEDY = "; use quantiles, or the logarithm or rank of the output"
 
 
 def _no_variance(tail: Tail) -> str:
-    """Return why there is no standard deviation and no interval of the mean, printed once."""
+    """Return the reason for the missing standard deviation and interval of the mean."""
     no_variance = f"heavy tail: {_seen(tail)}; with k above 0.5 there is no variance"
     return f"{no_variance}, hence no interval of the mean{_REMEDY}"
 
@@ -208,7 +208,7 @@ def _no_variance(tail: Tail) -> str:
 def sd_interval(
     values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
 ) -> Ends:
-    """Return the interval of the standard deviation.
+    """Return the confidence interval of the standard deviation.
 
     Parameters
     ----------
@@ -220,12 +220,13 @@ def sd_interval(
     Returns
     -------
     low, high : float
-        Of independent rows, or samples of several rows: Student's t of their squares [1]_ about
-        the mean, as the relative error of the variance, with that of the mean, both for the
-        logarithm; it allows for more outliers (`uq.stats.intervals.beyond_outliers`), since
-        samples without them scatter too little. Replicates: Student's t of the logarithms of
-        their variances, with the error of jumps that they do not show (`uq.stats.jumps`); the
-        upper end is raised by what one more row as extreme as the farthest would add.
+        Independent rows, or samples of several rows: Student's t interval of the squared deviations
+        from the mean [1]_. It gives the relative error of the variance, to which the error of the
+        mean is added, and is applied to the logarithm. It is widened for further outliers
+        (`uq.stats.intervals.beyond_outliers`), since samples that lack them underestimate the
+        scatter. Replicates: Student's t interval of the logarithms of their variances, widened for
+        undetected jumps (`uq.stats.jumps`). The upper end is raised by the effect of one more row
+        as extreme as the most extreme.
 
     References
     ----------
@@ -242,7 +243,7 @@ def sd_interval(
         low, high = _relative_ends(mean_squares / variance, confidence)
         return size * float(np.sqrt(variance * low)), size * float(np.sqrt(variance * high))
     logarithm = float(np.log(variance))
-    if isinstance(replicate, Clusters):  # a few rows each: their logarithms scatter too much
+    if isinstance(replicate, Clusters):  # few rows each: log variances scatter too much
         low, high = np.exp(scatter_interval(logarithm, mean_squares / variance, confidence))
         high += mean_squares.max() / max(len(mean_squares), replicate.samples)
     elif (mean_squares > 0).all():
@@ -260,14 +261,14 @@ def _relative_ends(squares: Floats, confidence: float) -> Ends:
     if n < 2:
         return UNKNOWN
     wide = student(upper_probability(confidence), n - 1)
-    # The mean is off by t s / sqrt(n), which counts only where nearly all squares are equal.
+    # The error of the mean, t s / sqrt(n), matters only if nearly all squares are equal.
     half = np.hypot(wide * squares.std(ddof=1) / n**0.5, wide**2 / n)
     ends = beyond_outliers(0.0, (-half, half), squares - squares.mean(), OUTLYING_SQUARES)
     return float(np.exp(ends[0])), float(np.exp(ends[1]))
 
 
 def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
-    """Return the root of the unbiased variance, NaN for a single row.
+    """Return the sample standard deviation: the root of the unbiased variance; NaN for one row.
 
     Parameters
     ----------
@@ -277,14 +278,14 @@ def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
     Returns
     -------
     float
-        The mean square about the mean is too small by the variance of that mean: an n-th of the
-        variance for independent rows, much less for designs that spread evenly, where it is
-        estimated from the means of the replicates.
+        The mean squared deviation underestimates the variance by the variance of the mean. This is
+        1/n of the variance for independent rows. It is much smaller for stratified designs, where
+        it is estimated from the means of the replicates.
     """
     if len(values) < 2:
         return np.nan
     if np.ptp(values) == 0:
-        return 0.0  # that of their mean, which is rounded, would be another
+        return 0.0  # deviations from the rounded mean would not be zero
     values, size = sized(values)
     means = values[:1] if replicate is None else by_replicate(values, replicate)
     if len(means) > 1:

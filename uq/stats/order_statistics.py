@@ -1,4 +1,4 @@
-"""Quantiles, their intervals, and tolerance bounds, from order statistics."""
+"""Sample quantiles, their confidence intervals, and tolerance bounds, from order statistics."""
 
 from collections.abc import Sequence
 
@@ -20,15 +20,16 @@ from uq.stats.quantile_functions import binomial, binomial_exceeded, negative_bi
 
 
 def is_within(probability: float, rows: int) -> bool:
-    """Whether there are enough values for a quantile: their ranks lie on average at i/(n + 1).
+    """Whether the sample size is sufficient for a quantile: 1/(n + 1) <= p <= n/(n + 1).
 
-    The rows of all replicates count, since their designs spread at least as evenly.
+    The i-th order statistic has the mean probability i/(n + 1). The rows of all replicates count,
+    since their designs are at least as evenly spread.
     """
     return bool(1 - ROUNDING <= probability * (rows + 1) <= rows + ROUNDING * rows)
 
 
 def rows_to_reach(probability: float) -> int:
-    """Return the least number of values that gives a quantile."""
+    """Return the minimum sample size for a quantile."""
     rarer = min(probability, 1 - probability)
     rows = int(np.ceil(1 / rarer - 1))
     return next(n for n in (rows - 1, rows, rows + 1) if n > 0 and is_within(probability, n))
@@ -46,8 +47,8 @@ def quantile(values: Floats, probability: float) -> float:
     Returns
     -------
     float
-        Infinite if an infinite value takes part; NaN where there are too few values, see
-        `is_within`.
+        Infinite if the interpolation includes an infinite value; NaN if there are too few values,
+        see `is_within`.
 
     References
     ----------
@@ -74,7 +75,7 @@ def quantile_interval(
     confidence: float = CONFIDENCE,
     ascending: Floats | None = None,
 ) -> Ends:
-    """Return the interval of a quantile.
+    """Return the confidence interval of a quantile.
 
     Parameters
     ----------
@@ -84,14 +85,14 @@ def quantile_interval(
     replicate : ndarray of int, shape (n,), optional
     confidence : float, optional
     ascending : ndarray, shape (n,), optional
-        The values in order, where that is known.
+        The sorted values, if already available.
 
     Returns
     -------
     low, high : float
-        Independent rows: order statistics, by the binomial law [1]_. Replicates: the quantiles at
-        both ends of the interval of the share of rows below the quantile [2]_. Bounds may
-        be infinite.
+        Independent rows: order statistics, by the binomial law [1]_. Replicates: Woodruff's
+        interval, the quantiles at both ends of the interval of the share of rows below the
+        quantile [2]_. Bounds may be infinite.
 
     References
     ----------
@@ -124,7 +125,7 @@ def quantile_interval(
 
 
 def order_statistic(values: Floats, rank: int) -> float:
-    """Return the value of this rank, from 1 to n, or NaN beyond."""
+    """Return the order statistic of this rank, 1 to n; NaN outside this range."""
     if not 1 <= rank <= len(values):
         return np.nan
     return float(np.partition(values, rank - 1)[rank - 1])
@@ -140,14 +141,14 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     failed : int
         Number of further rows without a value: they count as the worst on each side.
     coverage : float
-        Share of all values that must lie on the right side of a bound.
+        Share of all values within each one-sided bound.
     confidence : float
-        Probability that it does; 0.95 and 0.95 give the 95/95 bounds.
+        Probability of at least this coverage; 0.95 and 0.95 give the 95/95 bounds.
 
     Returns
     -------
     low, high : float
-        NaN where there are fewer rows than `rows_for_bound`.
+        NaN if there are fewer rows than `rows_for_bound`.
 
     References
     ----------
@@ -164,31 +165,31 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
 def joint_bounds(
     values: Sequence[Floats], failed: int, coverage: float, confidence: float
 ) -> list[float]:
-    """Return upper tolerance bounds that hold for several outputs at once, from independent rows.
+    """Return joint upper tolerance bounds of several outputs from independent rows (Wald 1943).
 
     Parameters
     ----------
     values : sequence of ndarray, shape (n,)
-        Of each output, in the same rows; finite or infinite. Those of an output with a lower bound
-        have the opposite sign.
+        Values of each output, in the same rows; finite or infinite. For a lower bound of an output
+        its values have the opposite sign.
     failed : int
-        Number of further rows that lack a value: they count as lying outside.
+        Number of further rows that lack a value: they count as outside the bounds.
     coverage : float
-        Share of all rows that must lie within all bounds.
+        Share of all rows that lie within all bounds.
     confidence : float
-        Probability that it does.
+        Probability of at least this coverage.
 
     Returns
     -------
     list of float
-        One bound for each output; NaN where there are fewer rows than `rows_for_bound`.
+        One bound for each output; NaN if there are fewer rows than `rows_for_bound`.
 
     Notes
     -----
-    Rows are cut off one at a time, the largest left of each output in turn [1]_; the last one cut
-    off for an output is its bound. As many are cut off as a bound of a single output leaves
-    outside, so that the share of the law within all bounds has the same distribution whatever the
-    dependence of the outputs [2]_.
+    Rows are removed one at a time: for each output in turn, the row with the largest remaining
+    value [1]_. The last row removed for an output gives its bound. The number of rows removed is
+    the number that a bound of a single output leaves outside. The distribution of the coverage
+    therefore does not depend on the dependence of the outputs [2]_.
 
     References
     ----------
@@ -213,21 +214,21 @@ def joint_bounds(
 
 
 def rows_for_bound(coverage: float, confidence: float, failed: int = 0, bounds: int = 1) -> int:
-    """Return the smallest number of rows, `failed` of them failed, for bounds that hold at once.
+    """Return the minimum sample size, including `failed` rows, for joint tolerance bounds.
 
     References
     ----------
     S. S. Wilks, "Determination of sample sizes for setting tolerance limits", Ann. Math. Stat. 12,
     91-96 (1941); for several bounds see `joint_bounds`.
     """
-    beyond = failed + bounds  # rows that must lie outside
+    beyond = failed + bounds  # number of rows outside the bounds
     return beyond + negative_binomial(confidence, beyond, 1 - coverage)
 
 
 def rows_still_needed(
     rows: int, failed: int, coverage: float, confidence: float, bounds: int = 1
 ) -> float:
-    """Return the number of rows required for bounds if no further row fails.
+    """Return the total sample size required for tolerance bounds if no further row fails.
 
     Parameters
     ----------
@@ -239,8 +240,8 @@ def rows_still_needed(
     Returns
     -------
     float
-        Infinite where as large a share failed as may lie outside: further rows, of which as many
-        fail, never give a bound.
+        Infinite if the share of failed rows is at least the share that may lie outside the bounds:
+        with this failure rate further rows never give a bound.
     """
     if rows and failed >= (1 - coverage) * rows:
         return np.inf
@@ -248,7 +249,7 @@ def rows_still_needed(
 
 
 def mid_ranks(values: Floats) -> Floats:
-    """Return the share of values below each, shape (n,), ties counted by half."""
+    """Return mid-ranks as shares: the share of values below each value, ties counted by half."""
     _, place, counts = np.unique(values, return_inverse=True, return_counts=True)
     middle = np.cumsum(counts) - counts / 2
     return np.asarray(middle[place] / max(len(values), 1))

@@ -1,7 +1,7 @@
-"""Quantile functions of the laws behind intervals.
+"""Quantile functions of the normal, Student, binomial and negative binomial laws.
 
-They have the bits of those of `scipy.stats`, whose import takes longer than most summaries:
-`scipy.special` holds the functions below them.
+Their results equal those of `scipy.stats` to the bit. They call `scipy.special` directly, since
+importing `scipy.stats` takes longer than most summaries.
 """
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from scipy import special
 
 from uq.contract import Floats
 
-_LARGEST_INT = 2**31 - 1  # that `scipy.special` counts to
+_LARGEST_INT = 2**31 - 1  # upper limit of integers in `scipy.special`
 _TIE = 64 * np.finfo(float).eps  # probabilities this close, relatively, are equal but for rounding
 
 
@@ -23,12 +23,12 @@ def normal(probability: Floats | float) -> Any:
 
 
 def student(probability: float, freedom: float) -> float:
-    """Return the quantile of Student's t; NaN without a degree of freedom."""
+    """Return the quantile of Student's t law; NaN for zero degrees of freedom."""
     return float(special.stdtrit(freedom, probability)) if freedom > 0 else nan
 
 
 def binomial(probability: float, trials: int, share: float) -> int:
-    """Return the least number of hits that at least this share of samples do not exceed."""
+    """Return the binomial quantile: the least k with P(hits <= k) >= probability."""
     return _least(
         special.bdtrik(probability, trials, share),
         lambda hits: special.bdtr(hits, trials, share) >= probability * (1 - _TIE),
@@ -36,7 +36,7 @@ def binomial(probability: float, trials: int, share: float) -> int:
 
 
 def binomial_exceeded(probability: float, trials: int, share: float) -> int:
-    """Return the least number of hits that at most this share of samples exceed."""
+    """Return the upper binomial quantile: the least k with P(hits > k) <= probability."""
     return _least(
         special.bdtrik(1 - probability, trials, share),
         lambda hits: special.bdtrc(hits, trials, share) <= probability * (1 + _TIE),
@@ -44,7 +44,7 @@ def binomial_exceeded(probability: float, trials: int, share: float) -> int:
 
 
 def negative_binomial(probability: float, hits: int, share: float) -> int:
-    """Return the least number of misses before so many hits, as `binomial` does."""
+    """Return the quantile of the number of misses before this number of hits."""
     return _least(
         special.nbdtrik(probability, hits, share),
         lambda misses: _at_most(misses, hits, share) >= probability * (1 - _TIE),
@@ -52,23 +52,24 @@ def negative_binomial(probability: float, hits: int, share: float) -> int:
 
 
 def _at_most(misses: int, hits: int, share: float) -> Any:
-    """Return the probability of at most so many misses before so many hits."""
+    """Return P(misses before this number of hits <= misses)."""
     if misses < _LARGEST_INT:
         return special.nbdtr(misses, hits, share)
     return special.betainc(hits, misses + 1.0, share)
 
 
 def _least(guess: Any, is_enough: Callable[[int], Any]) -> int:
-    """Return the least integer that is enough, near where the inverse function puts it.
+    """Return the least integer that satisfies a condition, searched from a guess.
 
-    It is enclosed in steps that double, then bisected: the inverse may be far off.
+    The integer is bracketed by doubling steps, then found by bisection, since the guess may be
+    inaccurate.
     """
-    most = max(ceil(guess), 0)  # enough, in the end
+    most = max(ceil(guess), 0)  # satisfies the condition after bracketing
     step = 1
     while not is_enough(most):
         most += step
         step *= 2
-    least, step = most - 1, 1  # not enough, in the end
+    least, step = most - 1, 1  # does not satisfy it after bracketing
     while least >= 0 and is_enough(least):
         most, least = least, least - step
         step *= 2

@@ -5,18 +5,18 @@ from math import sqrt
 
 
 def root(function: Callable[[float], float], ends: tuple[float, float], tolerance: float) -> float:
-    """Return the root of a function that changes its sign between two places.
+    """Return the root of a function within a bracket, by Chandrupatla's method.
 
-    By Chandrupatla's method, as `scipy.optimize.elementwise.find_root` does, whose import takes
-    longer than most summaries.
+    `scipy.optimize.elementwise.find_root` uses the same method, but its import takes longer than
+    most summaries.
 
     Parameters
     ----------
     function : callable
     ends : tuple of float
-        At which its signs differ, or one of its values is zero.
+        The bracket: the function has different signs at its ends, or is zero at one of them.
     tolerance : float
-        Largest error.
+        Largest absolute error of the root.
 
     Returns
     -------
@@ -25,7 +25,7 @@ def root(function: Callable[[float], float], ends: tuple[float, float], toleranc
     Raises
     ------
     ValueError
-        The function has one sign at both ends, or is not a number there.
+        The function has the same sign at both ends, or is NaN there.
 
     References
     ----------
@@ -42,7 +42,7 @@ def root(function: Callable[[float], float], ends: tuple[float, float], toleranc
     while True:
         x = a + share * (b - a)
         at_x = function(x)
-        # The root lies between a, the newest place, and b; c is the place before.
+        # The root lies between a, the newest point, and b; c is the previous point.
         if (at_x > 0) == (at_a > 0):
             c, at_c = a, at_a
         else:

@@ -1,4 +1,4 @@
-"""Survival curves of censored lives: Kaplan-Meier, exact bounds, simultaneous band."""
+"""Survival curves of censored lives: Kaplan-Meier estimate, pointwise bounds, simultaneous band."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from uq.stats.intervals import CONFIDENCE, Ends
 
 
 class MatchedBeta(NamedTuple):
-    """Beta laws with given means and variances, each of shape (k,); a variance may be 0."""
+    """Beta laws by their means and variances, each of shape (k,); a variance may be 0."""
 
     mean: Floats
     variance: Floats
@@ -27,7 +27,7 @@ class MatchedBeta(NamedTuple):
 
 
 class BetaProducts:
-    """Confidence distribution of the share that has ended, from lives some of which are censored.
+    """Beta product confidence distribution of the share that has ended, for censored lives.
 
     Parameters
     ----------
@@ -35,7 +35,8 @@ class BetaProducts:
         +inf for rows that never end.
     censored : ndarray of bool, shape (n,)
     known_at_once : bool
-        Whether every censored row is one that ends: the share that ends is then estimated apart.
+        Whether every censored row would end later: the share that ends is then estimated
+        separately.
 
     Attributes
     ----------
@@ -44,17 +45,17 @@ class BetaProducts:
     cumulative : ndarray, shape (k, 2)
         Mean and variance of -log S up to and including each end.
     ending : tuple of float
-        Parameters a, b of the beta law of the share that ever ends; b is 0 where this is 1.
+        Parameters a, b of the beta law of the share that ever ends; b is 0 if this share is 1.
 
     Notes
     -----
-    Where d of Y rows at risk end together, the probability of outliving that time falls by a factor
-    whose confidence distribution is Beta(Y - d + 1, d); its product S over all ends so far bounds
-    survival from above. A further row that ends right after the time, a factor of Beta(Y, 1),
-    bounds it from below [1]_. The share that ever ends is Beta(m + 1, n - m) if m of n do. The
-    share that has ended is the product of this and 1 - S, with a beta law of the same mean and
-    variance. Without censored rows that is the exact law of Clopper and Pearson, that of an order
-    statistic of uniform numbers.
+    If d of Y rows at risk end at the same time, survival decreases by a factor with the confidence
+    distribution Beta(Y - d + 1, d). The product S of these factors over all previous ends bounds
+    survival from above. A further row that ends immediately after the time adds a factor Beta(Y, 1)
+    and bounds survival from below [1]_. If m of n rows end, the share that ever ends has the law
+    Beta(m + 1, n - m). The share that has ended is the product of this share and 1 - S; its law is
+    approximated by a beta law of the same mean and variance. Without censored rows this is the
+    exact law of Clopper and Pearson: the law of an order statistic of uniform numbers.
 
     References
     ----------
@@ -79,12 +80,12 @@ class BetaProducts:
         self.cumulative = np.cumsum(np.stack([mean, variance], axis=1), axis=0)
 
     def ended_by(self, time: Floats) -> MatchedBeta:
-        """Return the law whose lower quantiles bound the share that has ended by each time."""
+        """Return the beta laws for lower confidence bounds of the share that has ended."""
         place = np.searchsorted(self.ends, time, side="right")
         return self._law(self._log_mean[place], self._log_relative[place])
 
     def ended_after(self, time: Floats) -> MatchedBeta:
-        """Return the law whose upper quantiles bound the share that has ended by each time."""
+        """Return the beta laws for upper confidence bounds of the share that has ended."""
         place = np.searchsorted(self.ends, time, side="right")
         left = self.at_risk_after(time)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -93,7 +94,7 @@ class BetaProducts:
         return self._law(log_mean, np.where(left > 0, log_relative, 0.0))
 
     def at_risk_after(self, time: Floats) -> Floats:
-        """Return the number of rows seen longer than each time, of those that end."""
+        """Return the number of rows at risk after each time, among the rows that end."""
         seen = np.searchsorted(self._sorted, time, side="right")
         return np.asarray(len(self._sorted) - seen, dtype=float)
 
@@ -110,7 +111,7 @@ class BetaProducts:
 
 
 class SurvivalCurve(NamedTuple):
-    """Share that outlives each time, and the variance of that estimate from independent rows."""
+    """Survival probability at each time, and its variance for independent rows."""
 
     share: Floats
     variance: Floats
@@ -119,7 +120,7 @@ class SurvivalCurve(NamedTuple):
 def outliving(
     values: Floats, censored: Mask, time: Floats, *, known_at_once: bool
 ) -> SurvivalCurve:
-    """Estimate the share that outlives each time.
+    """Estimate the survival probability at each time.
 
     Parameters
     ----------
@@ -129,7 +130,7 @@ def outliving(
     time : ndarray
         [s]
     known_at_once : bool
-        Whether every censored row is one that ends.
+        Whether every censored row would end later.
 
     Returns
     -------
@@ -137,13 +138,13 @@ def outliving(
 
     Notes
     -----
-    With p the share of the n rows that end, and S the estimate of Kaplan and Meier among these,
-    the share that outlives t is 1 - p + p S(t). Given how many rows end, the bias of S is
-    negligible, so that the errors of p and S are uncorrelated, and the variance is
-    (1 - S)^2 p (1 - p) / n + p^2 Var(S), with Greenwood's Var(S). Without censored rows that is
+    Let p be the share of the n rows that end, and S the Kaplan-Meier estimate of these rows. The
+    survival probability at t is 1 - p + p S(t). Given the number of rows that end, the bias of S is
+    negligible, so that the errors of p and S are uncorrelated. The variance is
+    (1 - S)^2 p (1 - p) / n + p^2 Var(S), with Greenwood's Var(S). Without censored rows this is
     the variance of the share of all rows, F (1 - F) / n with F = p (1 - S).
 
-    Otherwise a row that never ends is at risk until the last time: p is 1.
+    If `known_at_once` is false, rows that never end are at risk until the last time, and p is 1.
     """
     never = np.isposinf(values)
     if not known_at_once:
@@ -156,9 +157,9 @@ def outliving(
 
 
 def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> SurvivalCurve:
-    """Return Kaplan and Meier's estimate from finite values, with Greenwood's variance.
+    """Return the Kaplan-Meier estimate of finite values, with Greenwood's variance.
 
-    scipy's ``ecdf`` gives the first, but the second only within its own intervals.
+    scipy's ``ecdf`` gives the estimate, but uses the variance only inside its own intervals.
 
     References
     ----------
@@ -170,45 +171,46 @@ def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> SurvivalCurve:
     share = np.cumprod((at_risk - count) / at_risk)
     with np.errstate(divide="ignore", invalid="ignore"):
         variance = share**2 * np.cumsum(count / (at_risk * (at_risk - count)))
-    # All have ended: certain for these rows, unless some were censored before.
+    # After all rows have ended the variance is zero, unless some rows were censored before.
     variance[share == 0] = np.nan if censored.any() else 0.0
     place = np.searchsorted(ends, time, side="right")
     return SurvivalCurve(np.append(1.0, share)[place], np.append(0.0, variance)[place])
 
 
 DRAWS = 4000
-"""Curves drawn; the coverage is then set to 0.3 %."""
+"""Number of simulated curves; the coverage is then accurate to 0.3 %."""
 
 POINTS = 300
-"""Ends at which they are drawn: all, or as many that are spread over the odds of having ended."""
+"""Largest number of times at which curves are simulated, spread over the odds of having ended."""
 
-_HALVINGS = 9  # of the logarithm of the level at each end
+_HALVINGS = 9  # bisections of the logarithm of the tail probability
 
 
 def simultaneous_band(values: Floats, censored: Mask, time: Floats, *, known_at_once: bool) -> Ends:
-    """Return the 95 % band of the share that outlives each time.
+    """Return the simultaneous 95 % confidence band of a survival curve.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Of independent rows; +inf for those that never end.
+        Lives of independent rows; +inf for rows that never end.
     censored : ndarray of bool, shape (n,)
     time : ndarray, shape (k,)
         Ascending [s]
     known_at_once : bool
-        Whether every censored row is one that ends.
+        Whether every censored row would end later.
 
     Returns
     -------
     low, high : ndarray, shape (k,)
-        Valid from each time until before the next; NaN if no row ends.
+        Valid from each time up to, but excluding, the next; NaN if no row ends.
 
     Notes
     -----
-    Its ends are the quantiles of `BetaProducts`, with the same tail probability at all times, so
-    that all together miss in 5 % of curves drawn [1]_. Between two ends the number of expected
-    ends is exponential however rows are censored, hence the draws: exact without censored rows,
-    conservative for laws with steps.
+    The limits are quantiles of `BetaProducts` with the same tail probability at all times. This
+    probability is chosen so that 5 % of simulated curves leave the band [1]_. The cumulative hazard
+    between two ends, times the number of rows at risk, is exponential for any censoring, which
+    makes the simulation possible. The band is exact without censored rows, and conservative for
+    discontinuous laws.
 
     References
     ----------
@@ -227,9 +229,9 @@ def simultaneous_band(values: Floats, censored: Mask, time: Floats, *, known_at_
 
 @lru_cache(maxsize=8)
 def _tail(ranks: bytes, censored: bytes, known_at_once: bool) -> float:
-    """Return the tail probability at each time for which 5 % of curves leave the band.
+    """Return the pointwise tail probability for which 5 % of simulated curves leave the band.
 
-    It depends on the order of the rows alone: elements without censored rows share one.
+    It depends only on the order of the rows: all elements without censored rows share one value.
     """
     rows = np.frombuffer(ranks), np.frombuffer(censored, dtype=bool)
     law = BetaProducts(*rows, known_at_once=known_at_once)

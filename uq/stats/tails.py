@@ -1,9 +1,9 @@
-"""Heaviness of the tails of an output, and thus the moments that exist.
+"""Tail index of an output, which determines the moments that exist.
 
-Beyond a high threshold the values of almost any law follow a generalised Pareto law [1]_, whose
-shape k states how fast the tail decays: P(Y > y) ~ y^(-1/k) for k > 0. The variance exists where
-k < 1/2, the mean where k < 1. Without a variance, intervals of means, standard deviations and
-variance-based indices are meaningless, however many rows there are.
+Above a high threshold the values of almost any law follow a generalised Pareto law [1]_. Its shape
+k determines how fast the tail decays: P(Y > y) ~ y^(-1/k) for k > 0. The variance exists if
+k < 1/2, the mean if k < 1. Without a variance, intervals of means, standard deviations and
+variance-based indices are meaningless for any sample size.
 
 References
 ----------
@@ -21,43 +21,43 @@ from uq.stats.intervals import sized
 from uq.stats.quantile_functions import normal
 
 MIN_TAIL = 20
-"""Fewer values do not distinguish tails."""
+"""Minimum sample size for a diagnosis of the tails."""
 
 MAX_TAIL = 1000
-"""With more rows the tail starts farther out, where it is closer to its limit."""
+"""Largest tail size: with more rows the tail starts farther out, closer to its limiting law."""
 
 LARGEST_SHARE = 0.4
-"""Largest share of rows taken as tail if a generalised Pareto law fits them."""
+"""Largest share of rows used as the tail, if a generalised Pareto law fits them."""
 
 DISTINCT = 10
-"""Least number of distinct values in a tail; with fewer the law is discrete."""
+"""Fewest distinct values in a tail; with fewer, the law is treated as discrete."""
 
 LUMP = 0.2
-"""Largest share of a tail with one value; beyond it they are an atom of the law, not a tail."""
+"""Largest share of tied values in a tail; above it the value is an atom of the law, not a tail."""
 
 LIGHT = 1 / 3
-"""The k that samples of a lognormal law with sigma = 1 show, whose moments all exist."""
+"""Estimated k of samples from a lognormal law with sigma = 1, for which all moments exist."""
 
 SIGNIFICANCE = 0.01
-"""Chance of calling so light a tail heavy."""
+"""Probability of classifying this light tail as heavy (false positive rate)."""
 
 MISFIT = 1.0
-"""Anderson-Darling distance of a heavy tail from its fit that 1 % of samples exceed."""
+"""Critical Anderson-Darling statistic of the tail fit: 1 % of heavy-tailed samples exceed it."""
 
 _PRIOR_VALUES, _PRIOR_K = 10, 0.5
 
 
 class Tail(NamedTuple):
-    """The heavier tail of some values.
+    """Tail diagnosis: the fitted generalised Pareto law of the heavier tail.
 
     Attributes
     ----------
     k : float
         Shape of the generalised Pareto law.
     low, high : float
-        Its 95 % interval.
+        95 % confidence interval of k.
     values : int
-        Number of extreme values that it was fitted to.
+        Number of extreme values used in the fit.
     side : {"upper", "lower"}
     """
 
@@ -69,19 +69,19 @@ class Tail(NamedTuple):
 
     @property
     def no_variance(self) -> bool:
-        """Whether the rows contradict a finite variance: k is significantly above 1/2."""
+        """Whether the rows reject a finite variance: k is significantly above 1/2."""
         light = shrunk(LIGHT, self.values)
         reach = -normal(SIGNIFICANCE) * _error(LIGHT, self.values)
         return self.k > max(0.5, light + reach)
 
     @property
     def no_mean(self) -> bool:
-        """Whether they contradict a finite mean."""
+        """Whether the rows reject a finite mean: k is significantly above 1."""
         return self.no_variance and self.k >= 1
 
 
 def heavier_tail(values: Floats) -> Tail | None:
-    """Diagnose the tails of some values.
+    """Estimate the tail index of the heavier tail.
 
     Parameters
     ----------
@@ -91,12 +91,12 @@ def heavier_tail(values: Floats) -> Tail | None:
     Returns
     -------
     Tail or None
-        Of the upper or the lower tail, whichever is heavier. A tail is the largest part of the
-        rows, 40 % or 1000 at most and then half of it again and again, to which a generalised
-        Pareto law fits; k is the estimate of Zhang and Stephens [1]_, drawn towards 1/2 as if by
-        ten more values [2]_, as Pareto-smoothed importance sampling has it. Equal values, as of a
-        lattice, are spread halfway to their neighbours. None where no part of 20 values or more
-        fits, as with regimes far apart, few rows, or fewer than 10 different values.
+        The heavier of the upper and the lower tail. A tail starts with at most 40 % of the rows, or
+        1000 rows. It is halved until a generalised Pareto law fits. k is the estimate of Zhang and
+        Stephens [1]_, shrunk towards 1/2 with the weight of ten values [2]_, as in Pareto-smoothed
+        importance sampling. Equal values, as on a lattice, are spread halfway to their neighbours.
+        None if the law fits no tail of 20 or more values: for distant regimes, few rows, or fewer
+        than 10 different values.
 
     References
     ----------
@@ -128,7 +128,7 @@ def heavier_tail(values: Floats) -> Tail | None:
 
 
 def lacks_variance(values: Floats) -> bool:
-    """Whether the finite values contradict a finite variance."""
+    """Whether the finite values reject a finite variance."""
     tail = heavier_tail(values[np.isfinite(values)])
     return tail is not None and tail.no_variance
 
@@ -162,7 +162,7 @@ def _spread(ascending: Floats) -> Floats:
 
 
 def generalised_pareto(excess: Floats) -> tuple[float, float]:
-    """Estimate shape k and scale of a generalised Pareto law, after Zhang and Stephens (2009).
+    """Estimate shape k and scale of a generalised Pareto law (Zhang and Stephens 2009).
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
     points = 30 + int(np.sqrt(n))
     quartile = excess[int(n / 4 + 0.5) - 1]
     theta = 1 / excess[-1] + (1 - np.sqrt(points / (np.arange(points) + 0.5))) / (3 * quartile)
-    theta = theta[theta != 0]  # the exponential law itself, of lattices
+    theta = theta[theta != 0]  # 0 is the exponential law; it occurs for lattices
     shapes = np.log1p(-theta[:, None] * excess).mean(axis=1)
     likelihood = n * (np.log(-theta / shapes) - shapes - 1)
     weights = np.exp(likelihood - likelihood.max())
@@ -188,21 +188,21 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
 
 
 def _distance(excess: Floats, shape: float, scale: float) -> float:
-    """Return the Anderson-Darling statistic of ascending values and this law."""
+    """Return the Anderson-Darling statistic of ascending values for this law."""
     x = excess / scale
     right = -special.log1p(shape * x) / shape
     below, above = -special.inv_boxcox1p(-x, -shape), special.inv_boxcox(-x, -shape)
-    with np.errstate(divide="ignore"):  # in the half that is not taken
+    with np.errstate(divide="ignore"):  # in the branch that is not selected
         left = np.where(below < 0.5, np.log(below), np.log1p(-above))
     n = len(excess)
     return float(-n - (2 * np.arange(1, n + 1) - 1) @ (left + right[::-1]) / n)
 
 
 def shrunk(shape: float, size: int) -> float:
-    """Draw the shape from so many values towards 1/2, as if by ten more."""
+    """Return the shape shrunk towards 1/2 with the prior weight of ten values."""
     return (size * shape + _PRIOR_VALUES * _PRIOR_K) / (size + _PRIOR_VALUES)
 
 
 def _error(shape: float, size: int) -> float:
-    """Return the standard error of the shape (Smith 1987), drawn towards the prior."""
+    """Return the standard error of the shape (Smith 1987) after shrinkage towards the prior."""
     return max(1 + shape, 0.0) * np.sqrt(size) / (size + _PRIOR_VALUES)

@@ -1,4 +1,4 @@
-"""The difference and ratio of two estimates, with intervals from the interval of each."""
+"""Difference and ratio of two estimates, with confidence intervals (MOVER)."""
 
 import numpy as np
 
@@ -6,19 +6,19 @@ from uq.stats.estimate import NOTHING, Estimate
 
 
 def difference(first: Estimate, second: Estimate, correlation: float) -> Estimate:
-    """Return the second less the first, with an interval.
+    """Return the difference, second minus first, with its confidence interval.
 
     Parameters
     ----------
     first, second : Estimate
     correlation : float
-        Of the two estimates; -1 gives a conservative interval.
+        Correlation of the two estimates; -1 gives a conservative interval.
 
     Returns
     -------
     Estimate
-        By variance estimates recovery [1]_; for shares of independent rows this is the method of
-        [2]_.
+        Interval by the method of variance estimates recovery (MOVER) [1]_; for shares of
+        independent rows it is Newcombe's method [2]_.
 
     References
     ----------
@@ -29,7 +29,7 @@ def difference(first: Estimate, second: Estimate, correlation: float) -> Estimat
     """
 
     def reach(margin: float, other: float) -> float:
-        # Negative only by rounding: it is at least (margin - other)^2.
+        # At least (margin - other)^2; negative values are rounding errors.
         return float(np.sqrt(max(margin**2 + other**2 - 2 * correlation * margin * other, 0.0)))
 
     value = second.value - first.value
@@ -39,7 +39,7 @@ def difference(first: Estimate, second: Estimate, correlation: float) -> Estimat
 
 
 def ratio(first: Estimate, second: Estimate, correlation: float) -> Estimate:
-    """Return the second over the first, both positive; parameters as in `difference`."""
+    """Return the ratio second / first of positive estimates; parameters as in `difference`."""
     if not (first.value > 0 and second.value > 0):
         return NOTHING
 

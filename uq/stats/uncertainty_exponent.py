@@ -1,4 +1,4 @@
-"""The uncertainty exponent of the boundary between basins: how intermingled they are."""
+"""Uncertainty exponent of a basin boundary, which measures how intermingled the basins are."""
 
 import numpy as np
 import scipy  # which imports scipy.spatial when it is first used
@@ -12,13 +12,13 @@ from uq.stats.roots import root
 from uq.text.numbers import counted
 
 FARTHEST = 0.1
-"""Points farther apart in any coordinate are not compared."""
+"""Largest distance of compared points in any coordinate."""
 
 MOST_PAIRS = 400_000
-"""Of more rows than give about so many pairs, the first ones are compared."""
+"""Approximate limit of the number of pairs; with more rows only the first rows are compared."""
 
 FEWEST_ROWS = 20
-"""So many must have a close neighbour in another basin."""
+"""Fewest rows with a close neighbour in another basin."""
 
 _STEEPEST = 8.0
 _ENOUGH = 1e-4
@@ -27,37 +27,40 @@ _ENOUGH = 1e-4
 def uncertainty_exponent(
     points: Floats, basin: NDArray[np.integer], kind: NDArray[np.integer] | None = None
 ) -> Estimate:
-    """Estimate how fast uncertain outcomes become fewer as the start is known better.
+    """Estimate the uncertainty exponent of the basin boundary (Grebogi et al. 1983).
 
     Parameters
     ----------
     points : ndarray, shape (n, d)
         Independent and uniform in the unit cube.
     basin : ndarray of int, shape (n,)
-        Where each of them ends.
+        Basin of each point.
     kind : ndarray of int, shape (n,), optional
         Points of different kinds are not compared.
 
     Returns
     -------
     Estimate
-        Of alpha, where the share of pairs in different basins is f(r) = c r^alpha, r their distance
-        [1]_: 1 for a smooth boundary, less for a fractal one, whose dimension is d - alpha, and 0
-        where the outcome cannot be predicted at all. Scatter may take it above 1 and below 0.
-        Without a value, or an interval, where too few rows have a close neighbour elsewhere.
+        Estimate of alpha in f(r) = c r^alpha, where f is the share of pairs at distance r that lie
+        in different basins [1]_. alpha is 1 for a smooth boundary and less for a fractal boundary,
+        whose dimension is d - alpha. It is 0 if the outcome is unpredictable. Sampling error may
+        take the estimate above 1 or below 0. Value or interval are missing if too few rows have a
+        close neighbour in another basin.
 
     Notes
     -----
-    It is the exponent at distances up to `FARTHEST`, the largest over all coordinates: that of the
-    limit, if f is a power. About Cantor's set, which repeats at every third scale only, the
-    exponent of so few scales oscillates by up to 0.15. Pairs are counted from points at least as
-    far from every edge, so that a flat boundary gives f exactly proportional to r.
+    The exponent applies to distances up to `FARTHEST`, measured as the largest difference over all
+    coordinates. If f is a power, it equals the exponent in the limit of small distances. For
+    Cantor's set, which repeats itself only when the scale changes by three, the exponent of a few
+    scales oscillates by up to 0.15. Pairs are counted from points at least `FARTHEST` from every
+    edge, so that f is exactly proportional to r for a flat boundary.
 
-    The exponent is that of the log-linear Poisson model of the pairs, in which the mean log r of
-    those in different basins is that of all pairs weighted by r^alpha. Pairs share rows; therefore
-    the variance of the score is that of a U-statistic [2]_, from the sum over the pairs of each
-    row, and the interval contains each alpha whose score Student's t does not reject, its degrees
-    of freedom the effective number of rows near the boundary.
+    The estimator is maximum likelihood in the log-linear Poisson model of the pairs. Its score
+    equates the mean log r of pairs in different basins with the mean of all pairs, weighted by
+    r^alpha. Pairs share rows; therefore the variance of the score is computed as for a U-statistic
+    [2]_, from the sum over the pairs of each row. The interval contains every alpha that a score
+    test with Student's t does not reject. The degrees of freedom are the effective number of rows
+    near the boundary.
 
     References
     ----------
@@ -79,7 +82,7 @@ def uncertainty_exponent(
         return float(np.average(distance, weights=weight * np.exp(alpha * distance))) - goal
 
     def score(alpha: float) -> tuple[float, float]:
-        """Return the score over its standard deviation, and how many rows carry it."""
+        """Return the standardised score, and the effective number of rows behind it."""
         expected = weight * np.exp(alpha * distance)
         expected *= differing.sum() / expected.sum()
         centre = np.average(distance, weights=expected)
@@ -87,7 +90,7 @@ def uncertainty_exponent(
         pulls = np.bincount(pairs[0], terms, rows)
         pulls += np.bincount(pairs[1], terms, rows)
         squares = pulls**2
-        # Each pair is in the pulls of two rows; the mean pull is that of the score itself.
+        # Each pair contributes to the influence of two rows; the mean influence is the score.
         shared = squares.sum() - (terms**2).sum() - squares.size * pulls.mean() ** 2
         variance = max(shared, (terms**2).sum())
         effective = squares.sum() ** 2 / (squares**2).sum()
@@ -107,7 +110,7 @@ def uncertainty_exponent(
 def _close_pairs(
     points: Floats, basin: NDArray[np.integer], kind: NDArray[np.integer] | None
 ) -> tuple[int, NDArray[np.intp], Floats, Floats, Floats]:
-    """Find the pairs of close rows.
+    """Return the pairs of rows closer than `FARTHEST`.
 
     Returns
     -------
@@ -116,11 +119,11 @@ def _close_pairs(
     pairs : ndarray of int, shape (2, p)
         The rows of each pair.
     weight : ndarray, shape (p,)
-        How many of the two are as far from all edges as the farthest pair is wide.
+        Number of points of the pair (0, 1 or 2) that are at least `FARTHEST` from all edges.
     differing : ndarray, shape (p,)
-        The weight of a pair in different basins, else 0.
+        Weight of pairs in different basins; 0 for all other pairs.
     distance : ndarray, shape (p,)
-        Logarithm of the distance over `FARTHEST`.
+        Logarithm of the distance divided by `FARTHEST`.
     """
     rows = int(np.sqrt(2 * MOST_PAIRS / (2 * FARTHEST) ** points.shape[1]))
     points, basin = points[:rows], basin[:rows]

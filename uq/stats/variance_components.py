@@ -1,8 +1,7 @@
-"""Shares of the variance of nested rows: repeats of units of independent samples.
+"""Variance components of nested rows: samples, units within samples, repeats within units.
 
-Y = mean + A(sample) + B(sample, unit) + C(sample, unit, repeat), each with its own variance, of any
-law. B holds what a unit changes in any of the samples: units are nested in samples, so that it
-includes their interplay.
+Y = mean + A(sample) + B(sample, unit) + C(sample, unit, repeat). Each term has its own variance and
+may follow any law. Units are nested in samples: B includes the interaction of units and samples.
 """
 
 from typing import NamedTuple
@@ -16,11 +15,12 @@ from uq.stats.intervals import CONFIDENCE, ROUNDING, is_constant, upper_probabil
 from uq.stats.quantile_functions import student
 
 FEWEST_SAMPLES = 8
-"""Fewer independent samples do not show how far the shares scatter."""
+"""Fewest independent samples for a confidence interval of the shares."""
 
 FARTHEST = 2.0
-"""By this, times its squared share of the squared influences, the most influential sample widens
-an interval: samples without such a one scatter too little (measured)."""
+"""Coefficient by which the most influential sample widens an interval; it is multiplied by the
+squared share of this sample in the squared influences. Without such samples the scatter is
+underestimated (measured)."""
 
 FEW = f"needs {FEWEST_SAMPLES} samples to judge its scatter"
 ALL_SAME = "all values are the same"
@@ -30,19 +30,19 @@ NO_SCATTER = "no two samples show different shares"
 
 
 class NestedShares(NamedTuple):
-    """Shares of the variance, and how many samples they come from.
+    """Variance components as shares of the variance.
 
     Attributes
     ----------
     outer, middle, inner : Estimate
-        Of samples, of units, of repeats.
+        Shares of samples, units and repeats.
     error : Estimate
-        Of the error that each row states: contained in the others.
+        Share of the numerical error that each row states; it is included in the other shares.
     variance : float
         The sum of the three components.
     left_out : int
-        Samples without two units with a value, or without a unit of two repeats where there are
-        repeats.
+        Number of excluded samples: fewer than two units with a value, or no unit with two repeats
+        if there are repeats.
     """
 
     outer: Estimate
@@ -60,22 +60,22 @@ def nested_shares(
     analytic: Floats | None = None,
     weights: Floats | None = None,
 ) -> NestedShares:
-    """Estimate the shares of the variance of samples, units and repeats.
+    """Estimate the variance components of samples, units and repeats, as shares of the variance.
 
     Parameters
     ----------
     values : ndarray, shape (samples, units, repeats)
-        NaN where there is none. With a single repeat `middle` includes `inner`, which is unknown;
+        NaN if missing. With a single repeat `middle` includes `inner`, which cannot be estimated;
         with a single unit `outer` includes both.
     errors : ndarray, shape (samples, units, repeats), optional
-        Standard deviation of the numerical error of each value; NaN where it is not known.
+        Standard deviation of the numerical error of each value; NaN if unknown.
     replicate : ndarray of int, shape (samples,), optional
-        Of each sample, where only replicates are independent.
+        Replicate of each sample, if only replicates are independent.
     analytic : ndarray, shape (3, samples, units, repeats), optional
-        Variances that each row adds to those of samples, units and repeats, known without scatter:
-        of independent terms that `values` have at their means.
+        Variances that are known exactly for each row and are added to the components of samples,
+        units and repeats. They belong to independent terms that are at their means in `values`.
     weights : ndarray, shape (samples,), optional
-        Of samples.
+        Weights of the samples.
 
     Returns
     -------
@@ -83,18 +83,19 @@ def nested_shares(
 
     Notes
     -----
-    Analysis of variance: the components are unbiased for any laws [1]_. With s_u^2 the variance of
-    the repeats of a unit, b^2 that of the unit means of a sample and m their mean, they are
-    mean(s_u^2), mean(b^2) - mean(s_u^2) / repeats, and var(m) - mean(b^2) / units, where means are
-    over samples; where values are missing, with the numbers of those that are there. With weights w
-    of samples, means are weighted, and var(m) is unbiased for weights that do not depend on m: its
-    divisor is sum(w) - sum(w^2) / sum(w).
+    Analysis of variance: the components are unbiased for any laws [1]_. Let s_u^2 be the variance
+    of the repeats of a unit, b^2 the variance of the unit means of a sample, and m their mean. The
+    components are mean(s_u^2), mean(b^2) - mean(s_u^2) / repeats, and var(m) - mean(b^2) / units,
+    where means are over samples. If values are missing, the actual numbers of units and repeats are
+    used. With weights w of samples the means are weighted. The divisor of var(m) is then
+    sum(w) - sum(w^2) / sum(w), which is unbiased for weights that do not depend on m.
 
     Intervals: Student's t with the jackknife over independent samples (or replicates) [2]_ of a
-    share p, on the scale log((p + e) / (1 - p + f)), where e and f are the noise that was
-    subtracted from a component: what is left are ratios of mean squares, which are positive, skewed
-    as their logarithms suppose, and not pinned where a component vanishes. Analytic
-    variances are added to the components. Measured in `tests/uq/assess/test_coverage_levels.py`.
+    share p, on the scale log((p + e) / (1 - p + f)). Here e and f are the noise terms that were
+    subtracted from a component. This makes the transformed quantities ratios of mean squares: they
+    are positive, approximately log-symmetric, and not degenerate if a component vanishes. Analytic
+    variances are added to the components. Coverage is measured in
+    `tests/uq/assess/test_coverage_levels.py`.
 
     References
     ----------
@@ -140,14 +141,14 @@ def nested_shares(
 def _terms(
     values: Floats, errors: Floats | None, analytic: Floats, worth: Floats
 ) -> tuple[Floats, Mask]:
-    """Return the terms of the samples that `_shares` sums, and the mask of samples with terms.
+    """Return the terms of each sample for `_shares`, and the mask of samples used.
 
     Returns
     -------
     terms : ndarray, shape (12, n)
-        Weighted: 1, the weight, mean and squared mean of a sample, its noise, variance of units and
-        of repeats, noise of the latter, squared error, and analytic variances of samples, units and
-        repeats.
+        Weighted terms: 1, the weight, mean and squared mean of a sample, its noise, variance of
+        units and of repeats, noise of the latter, squared error, and analytic variances of samples,
+        units and repeats.
     whole : ndarray of bool, shape (samples,)
     """
     counts = np.isfinite(values).sum(axis=2)
@@ -192,7 +193,7 @@ def _terms(
 def _mean_and_variance(
     values: Floats, counts: NDArray[np.integer], least: float
 ) -> tuple[Floats, Floats]:
-    """Return both along the last axis, 0 for too few values, or a variance of rounding errors."""
+    """Return mean and variance along the last axis; 0 for too few values or pure rounding."""
     present = np.isfinite(values)
     sums = np.where(present, values, 0.0).sum(axis=-1)
     mean = np.divide(sums, counts, out=np.zeros(counts.shape), where=counts > 0)
@@ -207,12 +208,12 @@ def _shares(sums: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     Parameters
     ----------
     sums : ndarray, shape (12,) or (12, groups)
-        Of the terms of all samples, or of all but those of one group.
+        Sums of the terms over all samples, or over all samples except one group.
 
     Returns
     -------
     shares, added, beside : ndarray, shape (4,) or (4, groups)
-        Each share, and what its transformed interval adds to it and to its complement.
+        Each share, and the terms e and f that its transformation adds to it and its complement.
     variance : ndarray, shape () or (groups,)
     """
     n, squares, mean, square, noise, middle, inner, floor, error, *analytic = sums
@@ -228,7 +229,7 @@ def _shares(sums: Floats) -> tuple[Floats, Floats, Floats, Floats]:
 
 
 def _estimate(value: float, added: float, beside: float, without: Floats) -> Estimate:
-    """Return a share with its interval, from its values without each group of samples."""
+    """Return a share with its jackknife interval, from its leave-one-group-out values."""
     groups = len(without)
     pulls = (groups - 1) * (value - without)
     pulls = pulls - pulls.mean()

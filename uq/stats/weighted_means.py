@@ -1,8 +1,8 @@
-"""Weighted means of numbers between 0 and 1, with intervals.
+"""Weighted means of numbers between 0 and 1, with confidence intervals.
 
 Rows are independent, or belong to independent parts: the replicates of a design, or samples of
-several rows (`uq.stats.intervals`). Where few rows carry a mean, its interval is that of a share of
-hits.
+several rows (`uq.stats.intervals`). If few rows determine a mean, its interval is at least as wide
+as the binomial interval of a share.
 """
 
 from collections.abc import Callable
@@ -43,15 +43,15 @@ from uq.stats.jumps import EvenReplicates, beyond_jumps
 from uq.stats.quantile_functions import student
 
 FEW = 20
-"""With fewer effective rows on either side, an interval is no narrower than that of hits."""
+"""With fewer effective rows on either side, an interval is no narrower than a binomial one."""
 
 
 Hits = tuple[float, float]
-"""Rows of a binomial interval that limits the width of another from below, and its weight."""
+"""Sample size of a binomial interval that another interval must cover, and its weight (extent)."""
 
 
 def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> list[Hits]:
-    """Return the hits that the interval of a mean must allow for, where few rows carry a side.
+    """Return the binomial sample sizes that an interval must allow for, if few rows determine it.
 
     Parameters
     ----------
@@ -64,11 +64,11 @@ def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> li
     Returns
     -------
     list of (rows, extent)
-        Of the mean, and of its complement; only those that count. The rows are the effective number
-        of all rows, or fewer where those that carry most are heavier than they: a row that is
-        missing may be as heavy. Where no row carries anything, as heavy as the heaviest. The
-        extent is 1 where no more than 20 effective rows carry the mean, 0 from 40 on, between
-        them linear, so that an interval does not jump where the weights change a little.
+        One entry for the mean and one for its complement, if its extent is positive. `rows` is the
+        effective sample size, or less if the rows that contribute most have larger weights: an
+        unobserved row may have the same weight. If no row contributes, the largest weight is
+        assumed. The extent is 1 for up to 20 effective contributing rows and 0 from 40 on. It is
+        linear in between, so that the interval is continuous in the weights.
     """
     worth = np.ones(len(numbers)) if weights is None else weights
     of_samples = per_sample(worth, part)
@@ -78,21 +78,21 @@ def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> li
         extent = float(np.clip(2 - effective_rows(carried) / FEW, 0.0, 1.0))
         if extent > 0:
             most = carried.max()
-            # A sample that carries nearly as much as another counts nearly as it does.
+            # Samples with nearly equal contributions count nearly equally.
             heaviest = (of_samples * carried).max() / most if most > 0 else of_samples.max()
-            with np.errstate(over="ignore"):  # of a row that hardly has a weight
+            with np.errstate(over="ignore"):  # for rows of negligible weight
                 rows = min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
             hits.append((rows, extent))
     return hits
 
 
 def fewest_rows(hits: list[Hits]) -> float:
-    """Return the least number of rows of the hits; infinite if there are none."""
+    """Return the smallest binomial sample size; infinite if the list is empty."""
     return min((rows for rows, _ in hits), default=inf)
 
 
 def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> Ends:
-    """Return an interval at least as wide as the intervals of hits, by their extent.
+    """Return an interval widened to the binomial intervals, in proportion to their extent.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> E
         Lower and upper end.
     hits : list of (rows, extent)
     of_hits : function
-        Rows -> the interval of a share among so many.
+        Sample size -> binomial interval of the share.
     """
     lows, highs = [ends[0]], [ends[1]]
     for rows, extent in hits:
@@ -116,8 +116,9 @@ EXACT = "exact: rows differ only in what is integrated"
 def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
     """Return the linearised weighted mean of each independent part, shape (parts,).
 
-    The mean of all rows, plus the influence of the part on it; where all rows have learnt the law
-    of an input together, also on that law (`uq.stats.clusters.SharedInfluence`).
+    This is the mean of all rows plus the influence of the part on it. If the law of an input was
+    estimated from all rows, the influence on this law is included
+    (`uq.stats.clusters.SharedInfluence`).
     """
     mean = np.average(numbers, weights=weights)
     influence = _influence(numbers, weights)
@@ -143,27 +144,27 @@ def weighted_share(
     hits: list[Hits] | None = None,
     confidence: float = CONFIDENCE,
 ) -> Estimate:
-    """Estimate the mean of numbers between 0 and 1, weighted where rows have weights [1]_.
+    """Estimate a weighted mean of numbers between 0 and 1 [1]_.
 
     Parameters
     ----------
     numbers : ndarray, shape (n,)
-        Probabilities, given what is known of each row.
+        Conditional probabilities given each row.
     weights : ndarray, shape (n,), optional
     part : ndarray of int, shape (n,), optional
         The independent part of each row.
     hits : list of (rows, extent), optional
-        The intervals of hits that it must allow for; by default `hits_behind`.
+        Binomial sample sizes that the interval must allow for; by default `hits_behind`.
     confidence : float, optional
 
     Returns
     -------
     Estimate
-        With Student's interval of the logit from the parts' influences. The end on the side of the
-        farther outlier is moved by what two more such parts would add, since samples without them
-        scatter too little. Where no more than 20 effective rows carry the mean, or its
-        complement, it is no narrower than the exact interval of a share of hits: the rows that
-        matter may be missing. Up to 40 effective rows this fades out.
+        Mean with Student's interval of the logit, from the influences of the parts. The end on the
+        side of the farther outlier is moved by the effect of two more such parts, since samples
+        that lack them underestimate the scatter. If at most 20 effective rows determine the mean,
+        or its complement, the interval is no narrower than the exact binomial interval, since
+        important rows may be missing. This widening decreases to zero at 40 effective rows.
 
     References
     ----------
@@ -177,7 +178,7 @@ def weighted_share(
     parts = len(part_means)
     if parts < 2:
         return Estimate(mean, reason=ONE_ROW if part is None else "")
-    if numbers.min() >= 1 - ROUNDING:  # the complement has no digits
+    if numbers.min() >= 1 - ROUNDING:  # the complement is only rounding
         mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
@@ -191,7 +192,7 @@ def weighted_share(
 
 
 def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
-    """Estimate the mean of numbers between 0 and 1, with the interval that a difference needs.
+    """Estimate the mean of numbers between 0 and 1, with an interval for use in a difference.
 
     Parameters
     ----------
@@ -201,9 +202,9 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     Returns
     -------
     Estimate
-        Its interval alone would be too narrow: it has no more than Wilson's where few rows carry
-        the mean, and nothing for outliers. Two estimates are skewed to the same side, so that
-        most of this cancels in their difference, which would be too wide with it.
+        The interval is too narrow for the mean alone: it is only Wilson's if few rows determine the
+        mean, and it does not allow for outliers. Two estimates are skewed to the same side, so that
+        these effects mostly cancel in their difference; including them would make it too wide.
     """
     if not len(numbers):
         return Estimate()
@@ -219,7 +220,7 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
 def _of_logit(
     mean: float, part_means: Floats, confidence: float = CONFIDENCE
 ) -> tuple[float, float]:
-    """Return Student's interval of the logit of a mean, from the linearised means of the parts."""
+    """Return Student's logit interval of a mean, from the linearised means of the parts."""
     if not 0 < mean < 1:
         return mean, mean
     error = part_means.std(ddof=1) / len(part_means) ** 0.5
@@ -232,22 +233,23 @@ def _of_logit(
 def moments_of_rows(
     values: Floats, weights: Floats, part: Replicates = None, within: Floats | float = 0.0
 ) -> tuple[Estimate, Estimate]:
-    """Estimate mean and standard deviation from rows whose weights can be trusted [1]_.
+    """Estimate mean and standard deviation from rows with reliable weights [1]_.
 
     Parameters
     ----------
     values, weights : ndarray, shape (n,)
     part : ndarray of int, shape (n,), optional
     within : ndarray, shape (n,), optional
-        Variance of each value, where it is the mean of a law.
+        Variance of each value, if the value is the mean of a law.
 
     Returns
     -------
     mean, sd : Estimate
-        With Student's intervals from the parts' influences, that of the standard deviation by its
-        logarithm; of a single row a mean alone. The end on the side of the farther outlier is moved
-        by what two more such parts would add; of replicates whose rows have weights, two more such
-        rows: eight replicates without a heavy row scatter too little, and show no outlier.
+        Estimates with Student's intervals from the influences of the parts; the interval of the
+        standard deviation is on the log scale. A single row gives only a mean. The end on the side
+        of the farther outlier is moved by the effect of two more such parts. For replicates with
+        weighted rows it is moved by two more such rows: eight replicates without a heavy row
+        underestimate the scatter and show no outlier.
 
     References
     ----------
@@ -276,15 +278,15 @@ def moments_of_rows(
 def weighted_moments(
     values: Floats, weights: Floats, part: Replicates = None
 ) -> tuple[Estimate, Estimate]:
-    """Estimate mean and standard deviation if weights allow it.
+    """Estimate mean and standard deviation if the weights are reliable.
 
     Returns
     -------
     mean, sd : Estimate
-        The mean is missing, with the reason, where the Pareto k of weight times value is too
-        large; the standard deviation where a sample carries more than a hundredth of all weight.
-        Whether it is given must not depend on the values: without an outlier they scatter too
-        little.
+        The mean is missing, with the reason, if the Pareto k of weight times value is too large.
+        The standard deviation is missing if a sample carries more than a hundredth of the total
+        weight. This criterion must not depend on the values, since samples without an outlier
+        underestimate the scatter.
     """
     mean, sd = moments_of_rows(values, weights, part)
     of_samples = per_sample(weights, part)
@@ -300,18 +302,18 @@ def trusted(
     most: float = inf,
     hopeless: str = HOPELESS,
 ) -> Estimate:
-    """Return an estimate, or the reason why its weights do not allow one.
+    """Return the estimate, or a missing estimate with the reason if its weights are unreliable.
 
     Parameters
     ----------
     estimate : Estimate
     pulls : ndarray, shape (n,)
-        Weights; for a mean of numbers without bounds, times these numbers.
+        Weights; for a mean of unbounded numbers, weights times these numbers.
     part : ndarray of int, shape (n,), or None
     most : float, optional
-        The largest weight that a row can have.
+        Upper limit of the weight of a row.
     hopeless : str, optional
-        Reason where more rows would not help.
+        Reason to give if a larger sample would not help.
     """
     of_samples = per_sample(np.abs(pulls), part)
     if carries_little(most, len(of_samples)):

@@ -1,4 +1,4 @@
-"""Checks of a study file against its model and its design, beyond its shape."""
+"""Semantic validation of a study file against its model and its design."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
@@ -16,19 +16,19 @@ from uq.text.element_names import place_of, places, whole_name
 from uq.text.quantities import misfit
 
 Tables = Mapping[str, Mapping[str, Any]]
-"""The sound entries of a study file: table -> key -> value, as parsed."""
+"""Valid entries of a study file: table -> key -> value, as parsed."""
 
 
 def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Iterator[InputFault]:
-    """Yield the faults of a study with this model, apart from the laws of its parameters.
+    """Yield the faults of a study with this model, except faults in the laws of its parameters.
 
     Parameters
     ----------
     model : Model
     data : dict
-        The whole file as parsed: names are checked even where their values are unsound.
+        Complete file as parsed: names are checked even if their values are invalid.
     tables : dict
-        Its sound entries.
+        Valid entries of the file.
 
     Yields
     ------
@@ -78,7 +78,7 @@ _OF_NUMBERS = {"thresholds": "thresholds", "joint_bounds": "bounds", "wanted": "
 
 
 def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator[InputFault]:
-    """Yield the faults of the stopping rule `until` for its output."""
+    """Yield the faults of the stopping rule `until` that concern its output."""
     path = ("design", "until")
     for key in ("above", "below"):
         yield from _unit_faults(model, name, (*path, key), until.get(key))
@@ -97,7 +97,7 @@ def _until_faults(model: Model, name: str, until: Mapping[str, Any]) -> Iterator
 def _element_faults(
     model: Model, name: str, until: Mapping[str, Any], settings: Any
 ) -> Iterator[InputFault]:
-    """Yield a fault if an output has no such element with these settings."""
+    """Yield a fault if the named element of an output does not exist with these settings."""
     element = until["output"]
     if element == name or settings is None:
         return
@@ -137,7 +137,7 @@ def _output_faults(
     value: Any,
     no_number: str = "",
 ) -> Iterator[InputFault]:
-    """Yield a fault if a model lacks an output, or it is a category where numbers are needed."""
+    """Yield a fault if an output does not exist, or is a category although a number is required."""
     if not model.outputs:  # undeclared before rows have run
         return
     if name not in model.outputs:
@@ -152,7 +152,7 @@ def _output_faults(
 def _unit_faults(
     model: Model, name: str, path: tuple[str, ...], value: Any
 ) -> Iterator[InputFault]:
-    """Yield a fault if the unit of a number does not fit an output."""
+    """Yield a fault if the unit of a number is incompatible with its output."""
     output = model.outputs.get(name)  # None: undeclared before rows have run
     if output and isinstance(value, str) and (problem := misfit(value, name, output.unit)):
         if output.unit == "1" and isinstance(model.batch, RowByRow):
@@ -183,7 +183,7 @@ def _twin_faults(model: Model, twin: Any, given: Mapping[str, Any]) -> Iterator[
 
 
 def design_faults(tables: Tables) -> Iterator[InputFault]:
-    """Yield the requests of a study that its design does not allow."""
+    """Yield the faults of a study that its design causes: requests that it does not support."""
     table, analysis = tables["design"], tables["analysis"]
     if "method" not in table:
         return
@@ -205,7 +205,7 @@ def design_faults(tables: Tables) -> Iterator[InputFault]:
         problems["until"] = f"a '{method}' design cannot grow; use method = {able}"
     elif "until" in asks:
         yield from _index_faults(design, method, table["until"], tables["uncertain"])
-        paths = design.layout is PATHS and "index" in table["until"]  # they are independent
+        paths = design.layout is PATHS and "index" in table["until"]  # paths are independent
         if not (design.independent or paths) and table.get("replicates", 1) < 2:
             problems["until"] = (
                 f"a '{method}' design without replicates gives no interval; set replicates = 8"
@@ -273,7 +273,7 @@ _SEVERAL = "and the units and repeats of one sample are not; set both to 1, or l
 def _nesting_problems(
     table: Mapping[str, Any], uncertain: Mapping[str, Any]
 ) -> Iterator[tuple[str, str]]:
-    """Yield why a design cannot have the units or repeats asked for: key and problem."""
+    """Yield key and problem of requested units or repeats that a design does not support."""
     units, repeats, method = table.get("units", 1), table.get("repeats", 1), table["method"]
     asked = [key for key in ("units", "repeats") if table.get(key, 1) > 1]
     if not asked:
@@ -298,7 +298,7 @@ def _nesting_problems(
 def _method_faults(
     method: str, asked: Iterable[str], dependent: bool, unsaid: bool
 ) -> Iterator[InputFault]:
-    """Yield the sensitivity methods that a design cannot feed."""
+    """Yield a fault for each requested sensitivity method that a design does not support."""
     feeds, able = fed_by(DESIGNS[method]), fed_by(DESIGNS[method], dependent)
     if dependent and not able:
         return  # a fault of the design, reported there

@@ -18,12 +18,12 @@ _models: set[str] = set()
 
 
 def keep_apart(module: str) -> None:
-    """Have numba cache compiled code by `SourcesLocator` from now on in this process.
+    """Make numba use `SourcesLocator` for its disk cache in this process from now on.
 
     Parameters
     ----------
     module : str
-        The module of a model: its package counts even if it is installed.
+        Module of a model: its package is included even if it is installed.
     """
     _models.add(module.partition(".")[0])
     _watch()
@@ -45,18 +45,18 @@ def _install() -> None:
 
 @cache
 def _fresh_folder() -> Path:
-    """Make a folder for this process alone: numba unpickles its files."""
+    """Return a new private folder of this process, since numba unpickles the files in it."""
     folder = tempfile.mkdtemp(prefix=f"{DISTRIBUTION}-numba-")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return Path(folder)
 
 
 class SourcesLocator:
-    """The place of the compiled code of one function, as numba asks for it.
+    """Cache locator of numba: the folder of the compiled code of one function.
 
-    numba's own ``cache=True`` checks the file of a function only: after an edit of a file that it
-    calls into, it would load stale code. Here the name of the folder is a hash of all sources on
-    which a function can depend.
+    numba's own ``cache=True`` checks only the file of a function. After an edit of another file
+    that the function calls, it would load stale code. Here the name of the folder is a hash of all
+    sources on which a function can depend.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class SourcesLocator:
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], file: str) -> Self | None:
-        """Return the place for a function; None if numba is to decide."""
+        """Return the locator for a function; None to use numba's default."""
         module = function.__module__
         if module == "__main__" or not os.path.isfile(file):
             return None
@@ -93,7 +93,7 @@ class SourcesLocator:
         return locator
 
     def ensure_cache_path(self) -> None:
-        """Make the folder, if need be, and check that it is writable."""
+        """Create the folder if necessary, and check that it is writable."""
         self._path.mkdir(parents=True, exist_ok=True)
         os.utime(self._path.parent)
         tempfile.TemporaryFile(dir=self._path).close()
@@ -103,21 +103,21 @@ class SourcesLocator:
         return str(self._path)
 
     def get_source_stamp(self) -> str:
-        """Return an empty stamp: nothing else must match."""
+        """Return an empty stamp: the name of the folder already identifies the sources."""
         return ""
 
     def get_disambiguator(self) -> str:
-        """Return the line of the function, which distinguishes functions of one name."""
+        """Return the line number of the function, to distinguish functions of the same name."""
         return self._line
 
 
 def key_of(module: str) -> str:
-    """Return a hash of everything on which the compiled code of a module can depend.
+    """Return a hash of all sources on which the compiled code of a module can depend.
 
     Parameters
     ----------
     module : str
-        Its full name.
+        Full name of the module.
     """
     code, others = sources_of(module)
     whole = digest(code)

@@ -1,4 +1,4 @@
-"""Study: a study file bound to its model and checked, and its differences from another."""
+"""Study: a validated study file with its model, and the comparison of two studies."""
 
 import hashlib
 import json
@@ -28,33 +28,33 @@ _LONGEST = 1_000_000  # bytes of a study file
 
 @dataclass(frozen=True)
 class Study:
-    """Everything that a run needs to know, independent of where it runs.
+    """A validated study: model, inputs, design and analysis, independent of where it runs.
 
     Attributes
     ----------
     name : str
     model : Model
     model_reference : str
-        By which `uq.study.installed_models.model_at` finds the model, in another process too.
+        Reference with which `uq.study.installed_models.model_at` finds the model in any process.
     description : str
     design : DesignTable
         method, samples, replicates, units, repeats, second_order, seed, until.
     fixed : dict of str to float
         Parameters that override their nominal values.
     uncertain : dict of str to Law
-        In the file's order, which is the order of the design's columns. For a parameter that is a
-        multiple of another, the law of the factor.
+        Laws in the order of the file, which is the order of the columns of the design. For a
+        parameter that is a multiple of another, the law of the factor.
     settings : object
         An instance of ``model.settings``.
     analysis : AnalysisTable
         outputs (all of them if the file names none), quantiles, max_failed, tolerance,
         thresholds, twin, sensitivity.
     text : str
-        The whole study file, with the contents of the files that it names.
+        Complete study file, with the contents of the files that it names.
     path : str
-        Where it was read from.
+        Path from which the file was read.
     tied : dict of str to Tied
-        Parameters that equal another.
+        Parameters that equal another parameter.
     dependence : DependenceTable or None
     imported : dict of str to str
         For an imported design: parameter -> its column, for `uq.sampling.data_files.numbers`.
@@ -76,7 +76,7 @@ class Study:
     imported: Mapping[str, str] = field(default_factory=dict)
 
     def bounds(self, name: str) -> tuple[float, float]:
-        """Return the common bounds of a parameter and the parameters tied to it."""
+        """Return the intersection of the bounds of a parameter and of the parameters tied to it."""
         names = [name, *(other for other, tied in self.tied.items() if tied.equals == name)]
         lows, highs = zip(
             *(self.model.parameter(parameter).bounds for parameter in names), strict=True
@@ -89,13 +89,13 @@ class Study:
         return tuple(law.level for law in self.uncertain.values())
 
     def level(self, name: str) -> str:
-        """Return the level of a varying parameter; one that equals another has the same level."""
+        """Return the level of a varying parameter; tied parameters have the same level."""
         law = self.uncertain[self.tied[name].equals if name in self.tied else name]
         return law.level
 
     @property
     def random(self) -> bool:
-        """Whether the rows depend on their seed."""
+        """Whether rows depend on their seed."""
         free = {*self.uncertain, *self.tied}
         return self.model.random and not any(
             name not in free and self.fixed.get(name, self.model.nominal[name]) == value
@@ -104,7 +104,7 @@ class Study:
 
     @property
     def identity(self) -> str:
-        """SHA-256 of all that determines the rows: not their number, comments or [analysis]."""
+        """SHA-256 of all inputs of the rows, without their number, comments and [analysis]."""
         without = {"samples", "file", "until", "independent", "units", "repeats"}
         design = self.design.model_dump(exclude=without)
         constants = {
@@ -112,21 +112,21 @@ class Study:
             for name, nominal in self.model.nominal.items()
             if name not in self.uncertain and name not in self.tied
         }
-        # The contents of files count, their names do not.
+        # Contents of files are included, their names are not.
         laws = [
             [name, law.model_dump(exclude={"source", "file", "column", "level"}, exclude_none=True)]
             for name, law in self.uncertain.items()
         ]
         parts = [self.model.name, self.model.version, design, constants, laws]
         parts.append(self.model.choices_of(self.settings))
-        # Added only where present: studies without them keep their identity.
+        # Added only if present, so that studies without them keep their identity.
         if self.tied:
             parts.append({name: tied.equals for name, tied in self.tied.items()})
         if self.dependence:
             parts.append(self.dependence.model_dump(exclude={"source"}))
         if self.imported:
             parts.append(dict(self.imported))
-        if self.design.rows_of_a_sample > 1:  # else every level is a row of its own
+        if self.design.rows_of_a_sample > 1:  # otherwise levels have no effect
             sizes = [self.design.units, self.design.repeats]
             parts.append({"rows of a sample": sizes, "levels": self.levels})
         if self.random and DESIGNS[self.design.method].shares_seeds:
@@ -134,12 +134,12 @@ class Study:
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
     def with_samples(self, samples: int) -> Self:
-        """Return the same study with another number of samples.
+        """Return the study with another number of samples.
 
         Parameters
         ----------
         samples : int
-            Base size of each replicate.
+            Number of samples of each replicate.
 
         Returns
         -------
@@ -160,24 +160,24 @@ class Study:
 
 
 def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
-    """Read and check a study file, as `uq.execution.loading.load_study`; a model stays unknown."""
+    """Return the validated study in a file, without running models that declare no outputs."""
     return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
 
 
 def study_from_text(
     text: str, source: str = "study", model: str | None = None, folder: Path | None = None
 ) -> Study:
-    """Check the text of a study file; see `load_study`.
+    """Return the validated study from the text of a study file; see `load_study`.
 
     Parameters
     ----------
     text : str
-        The whole TOML.
+        Complete TOML text.
     source : str
-        The name of the text in error lines.
+        Name of the text in error lines.
     model : str, optional
     folder : Path, optional
-        The folder to which names of files are relative; the text in a result needs none.
+        Base folder of relative file names; not required for the text in a result.
 
     Returns
     -------
@@ -271,20 +271,20 @@ def _read(path: Path) -> str:
 
 
 _FREE = {("study", "name"), ("study", "description"), ("design", "samples"), ("design", "until")}
-"""Entries on which no row depends."""
+"""Entries that do not affect the rows."""
 
 
 def what_changed(text: str, model_version: str, study: Study) -> str:
-    """Return the first difference between a study and the study of computed rows.
+    """Return the first difference between a study and the study of the computed rows.
 
     Parameters
     ----------
     text : str
-        The study file of the rows.
+        Study file of the computed rows.
     model_version : str
-        The version of the model that computed them.
+        Version of the model that computed them.
     study : Study
-        With another identity.
+        Study with another identity.
 
     Returns
     -------
@@ -296,7 +296,7 @@ def what_changed(text: str, model_version: str, study: Study) -> str:
     except (ValueError, OverflowError, RecursionError):
         before = {}
     now = dict(_entries(read_toml(study.text)))
-    if study.design.rows_of_a_sample == 1:  # then no row depends on a level
+    if study.design.rows_of_a_sample == 1:  # levels have no effect
         before, now = (
             {place: value for place, value in entries.items() if place[2:] != ("level",)}
             for entries in (before, now)
@@ -316,7 +316,7 @@ def what_changed(text: str, model_version: str, study: Study) -> str:
 
 
 def refusal_to_extend(study: Study) -> str | None:
-    """Return why more samples cannot be appended to the rows of a study, or None."""
+    """Return the reason why samples cannot be appended to a study; None if they can."""
     method = study.design.method
     if DESIGNS[method].append_only:
         return None
@@ -327,7 +327,7 @@ def refusal_to_extend(study: Study) -> str | None:
 
 
 def _entries(table: dict[str, Any], path: tuple[str, ...] = ()) -> Iterator[tuple[Any, Any]]:
-    """Yield place and value of every entry on which rows depend."""
+    """Yield path and value of every entry that affects the rows."""
     for name, value in table.items():
         place = (*path, name)
         if (

@@ -1,7 +1,7 @@
-"""Evaluation of one chunk of rows through a model's batch, with the rows at fault isolated.
+"""Evaluation of a chunk of rows by the batch function of a model, with faulty rows isolated.
 
-A batch that raises or returns arrays of the wrong shape is halved until the rows at fault are
-found: they get a status and a message, the others their values.
+A batch that raises an exception or returns arrays of the wrong shape is bisected until the faulty
+rows are found. Faulty rows get a status and a message; all others get their values.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,12 +15,12 @@ from uq.errors import InputError, described
 
 
 def columns_of(model: Model, settings: Any) -> dict[str, NDArray[Any]]:
-    """Return the columns of a model's batch under these settings, in declared order.
+    """Return template columns of a model's batch with these settings, in declared order.
 
     Returns
     -------
     dict of str to ndarray, shape (*dims)
-        A row that could not be computed: the type and shape of every row.
+        One blank row, which defines type and shape of every row.
     """
     coordinates = model.coordinates(settings)
     columns: dict[str, NDArray[Any]] = {}
@@ -34,15 +34,15 @@ def columns_of(model: Model, settings: Any) -> dict[str, NDArray[Any]]:
 
 
 def failed_rows(status: NDArray[np.int8], required: Iterable[tuple[Output, NDArray[Any]]]) -> Mask:
-    """Return which rows failed.
+    """Return the mask of failed rows.
 
-    A row out of budget failed only if an output is missing.
+    A row that is out of budget counts as failed only if an output is missing.
 
     Parameters
     ----------
     status : ndarray of int8, shape (n,)
     required : iterable of (Output, ndarray)
-        Each output that may not be undefined, and its values, shape (n, *dims).
+        Each output that must be defined, and its values, shape (n, *dims).
 
     Returns
     -------
@@ -60,18 +60,18 @@ _WITH_OUTPUTS = (Status.OK, Status.OUT_OF_BUDGET)
 
 
 class KernelError(InputError):
-    """A model that violates its contract, whatever the row."""
+    """Raised if a model violates its contract, independent of the row."""
 
 
 class Chunk(NamedTuple):
-    """The outcome of n rows.
+    """Results of n evaluated rows.
 
     Attributes
     ----------
     columns : dict of str to ndarray, shape (n, *dims)
     status : ndarray of int8, shape (n,)
     failures : dict of str to (int, str)
-        Status label -> number of the first row with that status, and its message.
+        Status label -> number of the first row with this status, and its message.
     """
 
     columns: dict[str, NDArray[Any]]
@@ -80,7 +80,7 @@ class Chunk(NamedTuple):
 
 
 class RowFailure(NamedTuple):
-    """Why rows have no values."""
+    """Reason why rows have no values."""
 
     status: Status
     message: str
@@ -89,7 +89,7 @@ class RowFailure(NamedTuple):
 def evaluate(
     model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], start: int = 0
 ) -> Chunk:
-    """Run a model on a range of rows.
+    """Evaluate a model on a range of rows.
 
     Parameters
     ----------
@@ -105,12 +105,12 @@ def evaluate(
     Returns
     -------
     Chunk
-        Rows that are neither ok nor out of budget are blank.
+        Results; rows that are neither ok nor out of budget are blank.
 
     Raises
     ------
     KernelError
-        When names or dtypes are wrong, or a status or category does not exist.
+        Names or dtypes are wrong, or a status or category does not exist.
     """
     expected = columns_of(model, settings)
     columns = _blank_rows(expected, len(x))
@@ -119,7 +119,7 @@ def evaluate(
     todo = [(0, len(x))]
     while todo:
         first, last = todo.pop()
-        # Copies, so that the kernel sees writable arrays of its own in every process.
+        # Copies, so that the kernel gets private writable arrays in every process.
         returned = _call(model, settings, x[first:last].copy(), seed[first:last].copy(), expected)
         if isinstance(returned, RowFailure) and last - first > 1:
             middle = (first + last) // 2
@@ -143,7 +143,7 @@ def evaluate(
 
 
 def lost_rows(model: Model, settings: Any, rows: int, fault: RowFailure, start: int = 0) -> Chunk:
-    """Return blank rows, all lost by one fault; `start` as in `evaluate`."""
+    """Return blank rows that failed for the same reason; `start` as in `evaluate`."""
     status = np.full(rows, fault.status, dtype=np.int8)
     columns = _blank_rows(columns_of(model, settings), rows)
     return Chunk(columns, status, {fault.status.label: (start, fault.message)})
@@ -154,7 +154,7 @@ def _blank_rows(columns: Mapping[str, NDArray[Any]], rows: int) -> dict[str, NDA
 
 
 def joined(chunks: Sequence[Chunk]) -> Chunk:
-    """Concatenate consecutive chunks."""
+    """Return the concatenation of consecutive chunks."""
     if len(chunks) == 1:
         return chunks[0]
     failures: dict[str, tuple[int, str]] = {}
@@ -217,7 +217,7 @@ def _check_values(
     status: NDArray[np.int8],
     messages: dict[int, str],
 ) -> None:
-    """Refuse undeclared categories; mark rows that claim to be ok but have an invalid number."""
+    """Reject undeclared categories; set the status of rows marked ok with invalid numbers."""
     for name, output in model.outputs.items():
         values = columns[name].reshape(len(status), -1)
         if output.is_category:

@@ -1,7 +1,7 @@
-"""The shape of a study file: its tables and keys, whatever the model.
+"""Schema of a study file: its tables and keys, independent of the model.
 
-Pydantic checks files against these classes (`uq.study.reading`), and the JSON Schema for editors
-comes from them (`uq.study.schema`).
+Pydantic validates files with these classes (`uq.study.reading`), and the JSON Schema for editors is
+generated from them (`uq.study.schema`).
 """
 
 import re
@@ -89,7 +89,7 @@ _DISTINCT = AfterValidator(_distinct)
 Share = Annotated[float, Field(gt=0, lt=1)]
 _Text = Annotated[str, Field(pattern=SHAPE)]
 Quantity = Annotated[float, WrapValidator(_quantity, json_schema_input_type=float | _Text)]
-"""A number in the unit of the output, or text with its unit."""
+"""A number in the unit of the output, or text with a number and its unit."""
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
 
 
@@ -159,17 +159,17 @@ class Until(_Table):
 
     @property
     def threshold(self) -> float | None:
-        """The limit of a probability, if one is meant."""
+        """The threshold of a probability; None if the rule is for another estimate."""
         return self.below if self.above is None else self.above
 
     @property
     def probability(self) -> float | None:
-        """The probability of the quantile or B-life, if one is meant."""
+        """The probability of a quantile or B-life; None if the rule is for another estimate."""
         return self.quantile if self.b_life is None else float(self.b_life[1:]) / 100
 
     @property
     def label(self) -> str:
-        """The input of an index, or the two whose difference is meant; "" for all."""
+        """The input of an index, or the two inputs of a difference; "" for all inputs."""
         return self.input or " - ".join(self.difference or ())
 
     @property
@@ -194,7 +194,7 @@ class DesignTable(_Table):
         json_schema_extra=lambda schema: schema.update(enum=list(DESIGNS)),
     )
     samples: int = Field(
-        default_factory=lambda: 0,  # all rows of an imported file; other designs must say
+        default_factory=lambda: 0,  # all rows of an imported file; required for other designs
         ge=1,
         le=MAX_SAMPLES,
         description="base size of each replicate; see 'uq check' for rows",
@@ -223,12 +223,12 @@ class DesignTable(_Table):
 
     @property
     def has_independent_samples(self) -> bool:
-        """Whether samples are independent, by the design or because the study states it."""
+        """Whether samples are independent, by design or as stated in the study."""
         return self.independent or DESIGNS[self.method].independent
 
     @property
     def rows_of_a_sample(self) -> int:
-        """Units times repeats."""
+        """Number of rows per sample: units times repeats."""
         return self.units * self.repeats
 
 
@@ -247,7 +247,7 @@ def _kind(entry: Any) -> str:
     return "equals" if tied else "distribution"
 
 
-# The laws are those that exist by the time that a file is read or its schema written.
+# Laws are looked up when a file is read or a schema is written, so that later ones are included.
 _ANY_LAW = GetPydanticSchema(
     lambda law, handler: no_info_plain_validator_function(law_of),
     lambda schema, handler: handler(any_law().core_schema),
@@ -257,7 +257,7 @@ Entry = Annotated[
     Annotated[Law, _ANY_LAW, Tag("distribution")] | Annotated[Tied, Tag("equals")],
     Discriminator(_kind),
 ]
-"""How a parameter varies: by a law, or as another does."""
+"""Variation of a parameter: by its own law, or tied to another parameter."""
 
 ENTRY: TypeAdapter[Law | Tied] = TypeAdapter(Entry)
 
@@ -279,14 +279,14 @@ _NearlyAll = Annotated[float, Field(gt=0, le=0.999999999)]  # more needs over 10
 
 
 class Tolerance(NamedTuple):
-    """A bound that covers a share of all values, with a confidence."""
+    """Coverage and confidence of a tolerance bound."""
 
     coverage: _NearlyAll
     confidence: _NearlyAll
 
 
 USUAL = Tolerance(0.95, 0.95)
-"""Coverage and confidence where a study does not ask for others."""
+"""Default coverage and confidence."""
 
 _SURE_SCHEMA = {"type": "number", "exclusiveMinimum": 0, "maximum": 0.999999999}
 
@@ -357,7 +357,7 @@ class StudyFile(_Table):
 
     study: StudyTable
     design: DesignTable
-    # A parameter's bounds say whether it may be infinite.
+    # The bounds of a parameter determine whether it may be infinite.
     fixed: dict[str, Annotated[float, Field(allow_inf_nan=True)]] = Field(
         {}, description="parameter = value: overrides the nominal"
     )

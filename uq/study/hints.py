@@ -1,6 +1,6 @@
-"""Hints on intervals, indices and bounds that a study will not give, before any row is computed.
+"""Hints on intervals, indices and bounds that a study cannot give, before rows are computed.
 
-None of it is a fault: each may be meant.
+Hints are not faults: each may be intended.
 """
 
 import re
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 REPLICATES = 8
 """Advised number of replicates."""
 
-_FEW = 3  # replicates, of which an interval is about twice as wide, or more
-_PURE = ("1", "cycles")  # in which a life may be counted
+_FEW = 3  # replicates with which an interval is about twice as wide, or more
+_PURE = ("1", "cycles")  # units in which a life may be counted
 _LIFE = re.compile(
     r"(?!.*_(error|sd|ratio|share|fraction)$)"
     r"((.*_)?(life|lives|lifetimes?|ttf)(_(s|h|min|seconds|minutes|hours|days|years|cycles))?"
@@ -37,12 +37,12 @@ _LIFE = re.compile(
 
 
 def hints(study: "Study") -> list[str]:
-    """Return a sentence with a remedy on each number that a study will not give.
+    """Return a sentence with a remedy for each number that a study cannot give.
 
     Parameters
     ----------
     study : Study
-        Of a model of which the outputs are known.
+        Study of a model with declared outputs.
     """
     return [
         *undeclared_lives(study.model, study.analysis.outputs),
@@ -53,7 +53,7 @@ def hints(study: "Study") -> list[str]:
 
 
 def undeclared_lives(model: Model, names: tuple[str, ...] = ()) -> Iterator[str]:
-    """Yield a hint on each output that is named like a life, but not declared as one.
+    """Yield a hint for each output that is named like a life but not declared as a lifetime.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def _may_be_time(output: Output) -> bool:
 
 
 def _intervals(study: "Study") -> Iterator[str]:
-    """Yield a hint where replicates, or samples of several rows, are too few for an interval."""
+    """Yield a hint if replicates, or samples of several rows, are too few for an interval."""
     design = study.design
     kind = DESIGNS[design.method]
     key, count, least = "replicates", design.replicates, REPLICATES
@@ -114,9 +114,9 @@ def _intervals(study: "Study") -> Iterator[str]:
 
 
 def _indices(study: "Study") -> Iterator[str]:
-    """Yield a hint on each sensitivity method that has too few groups of rows.
+    """Yield a hint for each sensitivity method that has too few groups of rows.
 
-    The default of a plain sample is not asked for: who wants statistics needs fewer rows.
+    The default method of a plain sample is skipped, since other statistics require fewer rows.
     """
     design, kind = study.design, DESIGNS[study.design.method]
     groups = design.samples * design.replicates
@@ -129,7 +129,7 @@ def _indices(study: "Study") -> Iterator[str]:
 
 
 def _ends_of_samples(study: "Study") -> Iterator[str]:
-    """Yield a hint on quantiles and tolerance bounds that lie beyond all rows."""
+    """Yield a hint for quantiles and tolerance bounds that require a larger sample size."""
     design, analysis = study.design, study.analysis
     rows = design.samples * design.replicates * design.rows_of_a_sample
     if DESIGNS[design.method].layout is not PLAIN:

@@ -1,4 +1,4 @@
-"""Consistency of inputs with each other, their parameters and the design."""
+"""Consistency checks of inputs with each other, their parameters and the design."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -33,19 +33,19 @@ Entries = Mapping[str, Any]
 
 
 def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, list[InputFault]]:
-    """Return the sound entries of [uncertain], with the values of entries that name a file.
+    """Return the valid entries of [uncertain], with the values of entries that name a file.
 
     Parameters
     ----------
     tables : dict
-        The sound entries of a study file.
+        Valid entries of a study file.
     columns : dict
-        What its files hold.
+        Columns of the files that it names.
 
     Returns
     -------
     entries : dict of str to Law or Tied
-        Without those whose file could not be read.
+        Entries whose file cannot be read are excluded.
     faults : list of InputFault
     """
     entries: dict[str, Any] = {}
@@ -66,7 +66,7 @@ def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, 
 
 
 def laws_of(text: str) -> dict[str, Law]:
-    """Return the laws in the text of a study that a result carries, with their listed values."""
+    """Return the laws in the study text of a result, with their listed values."""
     data = parse(text, "study of this result")
     tables = sound_entries(data, shape_faults(data))
     entries, _ = read_entries(tables, columns_of_files(tables, None)[0])
@@ -74,7 +74,7 @@ def laws_of(text: str) -> dict[str, Law]:
 
 
 def input_faults(model: Model, entries: Entries) -> Iterator[InputFault]:
-    """Yield the faults of a parameter's law, or of the parameter that it follows."""
+    """Yield the faults of each parameter's law, or of the parameter to which it is tied."""
     model_entries = {
         name: entry for name, entry in entries.items() if name in model.parameter_names
     }
@@ -106,7 +106,7 @@ def input_faults(model: Model, entries: Entries) -> Iterator[InputFault]:
                 yield InputFault(path, problem, other)
             elif unsuited := law_problem(law, parameter):
                 yield InputFault(path, f"'{name}' cannot follow it: {unsuited.problem}", other)
-        elif not law_problem(law, other_parameter):  # else reported at that parameter
+        elif not law_problem(law, other_parameter):  # otherwise reported for the other parameter
             low, high = support(law, other_parameter.bounds)
             if low <= 0 <= high:
                 problem = f"must not change sign or be zero: lies within {low:g} to {high:g}"
@@ -116,7 +116,7 @@ def input_faults(model: Model, entries: Entries) -> Iterator[InputFault]:
 
 
 def _level_problem(entry: Law | Tied, name: str, other: Law) -> str | None:
-    """Return why a parameter and the one that it follows differ in level, or None."""
+    """Return the reason why two tied parameters have inconsistent levels; None if consistent."""
     if entry.level in (None, other.level):
         return None
     verb = "equals" if isinstance(entry, Tied) else "times"
@@ -127,12 +127,12 @@ def _level_problem(entry: Law | Tied, name: str, other: Law) -> str | None:
 
 
 def _followed(entry: Law | Tied) -> str | None:
-    """Return the parameter that an entry equals or multiplies; None for a law alone."""
+    """Return the parameter to which an entry is tied or by which it is scaled; None if neither."""
     return entry.equals if isinstance(entry, Tied) else entry.times
 
 
 def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[InputFault]:
-    """Yield the faults of [dependence], in itself or for this design."""
+    """Yield the faults of [dependence], including conflicts with the design."""
     table = tables["dependence"]
     if not table:
         return
@@ -174,7 +174,7 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[I
 def import_faults(
     model: Model, tables: Mapping[str, Any], entries: Entries, columns: Columns
 ) -> Iterator[InputFault]:
-    """Yield why the rows of a file cannot serve as a design."""
+    """Yield the faults of imported rows that prevent their use as a design."""
     table = tables["design"]
     if table.get("method") not in IMPORTED:
         if "file" in table and "method" in table:
@@ -211,10 +211,10 @@ def import_faults(
 def _product_problem(
     parameter: Parameter, factor: Law, law: Law, other_parameter: Parameter
 ) -> str | None:
-    """Return why a factor times another parameter leaves a parameter's bounds, or None."""
+    """Return the reason why a scaled parameter exceeds its bounds; None if it does not."""
     from scipy.stats import norm
 
-    # The factor's probability outside, averaged over the other's law; both of its tails count.
+    # Probability of the factor outside, averaged over the other's law, including both its tails.
     z = np.linspace(-8.0, 8.0, 801)
     other = ppf_within(law, norm.cdf(z), other_parameter.bounds)
     share = outside_share(factor, *factor_ends(other, parameter.bounds))

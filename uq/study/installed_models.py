@@ -1,7 +1,7 @@
-"""The models installed here, found through entry points, and a hash of their code.
+"""Installed models, found through entry points, and a hash of their code.
 
-Rows computed by different code do not form one result. The version of a model is its author's
-promise; the hash comes from the files.
+Rows computed by different code do not form one result. The version of a model is declared by its
+author; the hash is computed from the files.
 """
 
 import importlib
@@ -44,14 +44,15 @@ def model_names() -> tuple[str, ...]:
 def find_model(name: str, folder: Path | None = None) -> Model:
     """Return an installed model by its name.
 
-    The name may come from a file that somebody sent: nothing but an installed model is ever
-    imported for it, no file read and no address called.
+    The name may come from an untrusted file. Only installed models are imported for it; no file is
+    read and no address is called.
 
     Parameters
     ----------
     name : str
     folder : Path, optional
-        Where a file with such a model may lie, besides the current folder; named, not read in.
+        Further folder to search for a file with this model, besides the current folder. The file is
+        only mentioned in the error, not imported.
 
     Returns
     -------
@@ -67,17 +68,17 @@ def find_model(name: str, folder: Path | None = None) -> Model:
 
 
 def model_at(reference: str) -> Model:
-    """Return a model by the reference that a user gave: ``--model``, or an argument in Python.
+    """Return a model by a reference from the user: ``--model``, or an argument in Python.
 
     It may run code. `tests/test_architecture.py` lists the modules that may import it: those that
-    pass on what a user gave. A name in a file goes to `find_model`.
+    pass on input of the user. For names in files use `find_model`.
 
     Parameters
     ----------
     reference : str
-        The name of an installed model, ``"package.module:ATTRIBUTE"``, or ``"file.py"`` with a
-        model or a function under `uq.machines.function.machine` (``"file.py:NAME"`` where there are
-        several), ``"file.toml"`` that describes a program or FMU, ``"file.fmu"``, or
+        The name of an installed model; ``"package.module:ATTRIBUTE"``; ``"file.py"`` with a model
+        or a function decorated by `uq.machines.function.machine` (``"file.py:NAME"`` if there are
+        several); ``"file.toml"`` that describes a program or FMU; ``"file.fmu"``; or
         ``"http://host:port/NAME"``.
 
     Returns
@@ -87,7 +88,7 @@ def model_at(reference: str) -> Model:
     Raises
     ------
     InputError
-        There is no such model, or its package cannot be imported.
+        The model does not exist, or its package cannot be imported.
     """
     if reference.endswith(_MACHINES):
         from uq.machines.program import machine_of
@@ -108,12 +109,12 @@ def with_returns(reference: str, returned: Mapping[str, Returned]) -> str:
 
 
 def without_returns(reference: str) -> str:
-    """Return a reference as the user gave it."""
+    """Return a reference without declared returns, as given by the user."""
     return reference.partition(_KNOWN_TO_RETURN)[0]
 
 
 def located(reference: str) -> str:
-    """Return a reference that holds in any folder of this computer."""
+    """Return a reference with an absolute path, valid in any folder of this computer."""
     if reference.startswith(_SERVERS):
         return reference
     if reference.endswith(_MACHINES):
@@ -130,7 +131,7 @@ def module_of(reference: str) -> str:
 
 
 def _point(reference: str) -> EntryPoint:
-    """Return the place of a model, from which it can be imported."""
+    """Return the entry point of a model, from which it can be imported."""
     reference = without_returns(reference)
     if in_file := _FILE.fullmatch(reference):
         return EntryPoint(reference, f"{_module_in(Path(in_file[1]))}:{in_file[2] or ''}", GROUP)
@@ -144,7 +145,7 @@ def _point(reference: str) -> EntryPoint:
 
 
 def _installed(name: str, folder: Path | None = None) -> EntryPoint:
-    """Return the place of an installed model."""
+    """Return the entry point of an installed model."""
     installed = _entry_points()
     if name not in installed:
         if file := file_with(name, filter(None, (Path(), folder))):
@@ -161,7 +162,7 @@ def _installed(name: str, folder: Path | None = None) -> EntryPoint:
 
 
 def _module_in(file: Path) -> str:
-    """Return the name by which the module in a file can be imported."""
+    """Return the name under which the module in a file can be imported."""
     file_there(file)
     folder, name = str(file.absolute().parent), file.stem
     if folder not in sys.path:
@@ -191,7 +192,7 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
         raise InputError(f"{label} {clash}")
     keep_apart(module_name)
     try:
-        with redirect_stdout(sys.stderr):  # its prints must not mix with an answer
+        with redirect_stdout(sys.stderr):  # its output must not mix with results
             module = importlib.import_module(module_name)
         model = getattr(module, attribute or _only_model(module, label))
     except InputError:
@@ -216,7 +217,7 @@ def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None
 
 
 def _remedy_of_missing(package: str) -> str:
-    """Return the advice where a module of a package is missing."""
+    """Return the advice for a missing module of a package."""
     if clash := namesake(package):
         return clash
     if place := found_at(package):
@@ -241,7 +242,7 @@ def _only_model(module: ModuleType, label: str) -> str:
 
 
 def _check(model: Model, label: str) -> None:
-    """Refuse a model whose parameters or settings are not declared, or whose labels have blanks."""
+    """Reject a model with undeclared parameters or settings, or with blanks in its labels."""
     try:
         for name in model.parameter_names:
             model.parameter(name)
@@ -273,14 +274,15 @@ def made_here(reference: str) -> dict[str, str]:
 
 
 def is_other_code(made: Mapping[str, object], reference: str) -> bool:
-    """Return whether rows were computed by code other than that installed here.
+    """Return whether rows were computed by code that differs from the installed code.
 
     Parameters
     ----------
     made : dict
-        What determined them, as recorded by `made_here`; without ``code``, they count as this code.
+        Provenance of the rows, as recorded by `made_here`; without ``code`` the same code is
+        assumed.
     reference : str
-        As above.
+        As for `model_at`.
     """
     here = code_of(reference)
     return made.get("code", here) != here
@@ -289,7 +291,7 @@ def is_other_code(made: Mapping[str, object], reference: str) -> bool:
 def code_of(reference: str) -> str:
     """Return a hash of the sources of a model: its module and the modules it imports.
 
-    Only the sources of its package, and of its neighbours in the same folder, count.
+    Only sources of its package, and of modules in the same folder, are included.
 
     Parameters
     ----------
@@ -299,7 +301,7 @@ def code_of(reference: str) -> str:
     Returns
     -------
     str
-        Independent of where the package lies. It is computed once per process, like the import.
+        Independent of the location of the package; computed once per process, like the import.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Files of a user that have a model, or that bear the name of one of our packages."""
+"""User files that define a model, or that have the name of one of our packages."""
 
 import ast
 import os
@@ -12,12 +12,12 @@ from typing import Any
 from uq.files.whole_files import node
 from uq.study.sources import DISTRIBUTION, INSTALLED, found_at, own_packages, sources_of
 
-_LARGEST = 1_000_000  # bytes of a file that is looked into
-_MOST = 300  # files of a folder
+_LARGEST = 1_000_000  # largest size of a searched file in bytes
+_MOST = 300  # most files searched in a folder
 
 
 def file_with(model: str, folders: Iterable[Path]) -> str:
-    """Return the first file that has a model of this name, as a shell reads it; "" if none has.
+    """Return the shell-quoted reference of the first file with this model; "" if there is none.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def file_with(model: str, folders: Iterable[Path]) -> str:
     Returns
     -------
     str
-        As ``--model`` takes it: ``pad.py``, ``machines.py:pad`` or ``pad.toml``.
+        Reference for ``--model``: ``pad.py``, ``machines.py:pad`` or ``pad.toml``.
     """
     for folder in dict.fromkeys(folders):
         with suppress(OSError):
@@ -39,18 +39,18 @@ def file_with(model: str, folders: Iterable[Path]) -> str:
 
 
 def shortened(reference: str) -> str:
-    """Return a reference as a shell reads it, in the current folder without the folder."""
+    """Return a shell-quoted reference, relative to the current folder if the file is in it."""
     return shlex.quote(reference.removeprefix(f"{os.getcwd()}{os.sep}"))
 
 
 def _reference(path: Path, model: str) -> str:
-    """Return the reference to a model in a file; "" if it is not there."""
+    """Return the reference to a model in a file; "" if the file does not define it."""
     if node(path) or path.stat().st_size > _LARGEST:
         return ""
     content = path.read_bytes()
     if model.encode() not in content:
         return ""
-    # Files in progress are not always valid, and ast gives up on deep ones.
+    # Unfinished files may be invalid, and ast fails for deeply nested ones.
     with suppress(SyntaxError, ValueError, RecursionError, MemoryError):
         return _NAMED[path.suffix](path, content, model)
     return ""
@@ -65,7 +65,7 @@ def _in_python(path: Path, content: bytes, model: str) -> str:
 
 
 def _named(statement: ast.stmt) -> tuple[str, str] | None:
-    """Return the name of the model that a statement makes, and the name of its variable."""
+    """Return the name of the model that a statement defines, and the name of its variable."""
     match statement:
         case ast.FunctionDef(name=name, decorator_list=marks) if "machine" in map(_callee, marks):
             return name, name
@@ -80,7 +80,7 @@ def _named(statement: ast.stmt) -> tuple[str, str] | None:
 
 
 def _callee(expression: ast.expr) -> str:
-    """Return the last part of the name of a decorator or of the function called."""
+    """Return the last part of the name of a decorator or called function."""
     called = expression.func if isinstance(expression, ast.Call) else expression
     return getattr(called, "attr", getattr(called, "id", ""))
 
@@ -93,21 +93,21 @@ def _in_machine_file(path: Path, content: bytes, model: str) -> str:
 _NAMED = {".py": _in_python, ".toml": _in_machine_file}
 
 
-_HOUSE = Path(__file__).parents[2]  # our packages lie beside each other, however installed
+_HOUSE = Path(__file__).parents[2]  # our packages are in one folder for any kind of installation
 
 
 def namesake(package: str) -> str:
-    """Return a message if Python finds another package under the name of one of our models'.
+    """Return a message if another package hides the package of one of our models.
 
     Parameters
     ----------
     package : str
-        Of a model.
+        Package of a model.
 
     Returns
     -------
     str
-        A sentence with both places; "" if Python finds ours.
+        Sentence with both locations; "" if Python finds our package.
     """
     first, ours = found_at(package), _HOUSE / package
     if package not in own_packages() or not ours.is_dir() or first is None or _is_same(first, ours):
@@ -122,17 +122,17 @@ def namesake(package: str) -> str:
 
 
 def hidden_beside(module: str) -> str:
-    """Return a message if a module's import of a neighbouring file is hidden by our package.
+    """Return a message if our package hides a file that a neighbouring module imports.
 
     Parameters
     ----------
     module : str
-        Of a model in a file.
+        Module of a model in a file.
 
     Returns
     -------
     str
-        A sentence with both places; "" if Python finds what the module means.
+        Sentence with both locations; "" if Python finds the intended file.
     """
     code, others = sources_of(module)
     names = [name.split(".") for name in (*code, *others)]

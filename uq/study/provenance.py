@@ -1,4 +1,4 @@
-"""The processor and the versions that computed a result: rows may differ with others."""
+"""Provenance of a result: processor and software versions, on which rows may depend."""
 
 import importlib.metadata
 import platform
@@ -14,30 +14,30 @@ _COMPUTING = ("vibrolife", "numpy", "numba", "scipy", "distributed")
 
 @cache
 def provenance() -> dict[str, str]:
-    """Return the processor and the versions that compute results here, not to be changed."""
+    """Return processor and software versions of this machine; callers must not change the dict."""
     here = {"cpu": _cpu(), "python": platform.python_version()}
     return here | {name: importlib.metadata.version(name) for name in _LIBRARIES}
 
 
 @cache
 def versions() -> dict[str, str]:
-    """Return the versions that must agree in all processes that compute rows of one result."""
+    """Return the versions that must be equal in all processes that compute rows of a result."""
     python = ".".join(platform.python_version_tuple()[:2])
     return {"Python": python} | {name: importlib.metadata.version(name) for name in _COMPUTING}
 
 
 def differences(wanted: Mapping[str, str]) -> str:
-    """Return how the versions of this process differ from those wanted; "" if they do not.
+    """Return the differences between required versions and those of this process; "" if none.
 
     Parameters
     ----------
     wanted : dict of str to str
-        `versions` of the process that wants rows.
+        `versions` of the process that requests rows.
 
     Returns
     -------
     str
-        The rest of a sentence about this process, for the user of the other one.
+        End of a sentence about this process, for the user of the requesting process.
     """
     pairs = [(name, version, wanted.get(name)) for name, version in versions().items()]
     wrong = [(name, version, required) for name, version, required in pairs if version != required]

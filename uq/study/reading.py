@@ -1,4 +1,4 @@
-"""From the text of a study file to its tables: syntax and shape, one line per fault."""
+"""Parser of a study file: syntax and schema of its tables, with one error line per fault."""
 
 from collections.abc import Sequence
 from functools import lru_cache, partial
@@ -15,18 +15,18 @@ from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance, Until
 from uq.text.literals import key as written_key
 from uq.text.literals import read_toml
 
-_MOST_ENTRIES = 2_000  # of a table; the time for its faults grows with their square
+_MOST_ENTRIES = 2_000  # per table; the time to find faults grows with its square
 
 
 def read_study_text(text: str, source: str = "study") -> StudyFile:
-    """Read the text of a study without its model.
+    """Return the study file from its text, checked without its model.
 
     Parameters
     ----------
     text : str
-        The whole TOML.
+        Complete TOML text.
     source : str
-        What error lines call it.
+        Name of the text in error lines.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def read_study_text(text: str, source: str = "study") -> StudyFile:
     Raises
     ------
     InputError
-        One line per fault of syntax or shape.
+        One line per fault of syntax or schema.
     """
     data = parse(text, source)
     if faults := shape_faults(data):
@@ -46,12 +46,12 @@ def read_study_text(text: str, source: str = "study") -> StudyFile:
 @lru_cache(maxsize=2)
 @first_fault_alone()
 def study_of_result(text: str) -> StudyFile:
-    """Return the study that a result carries; raise `InputError` with one line."""
+    """Return the study stored in a result; raise `InputError` with one line if it is invalid."""
     return read_study_text(text, "study of this result")
 
 
 def parse(text: str, source: str) -> dict[str, Any]:
-    """Read TOML; raise `InputError` with the line where it goes wrong."""
+    """Return parsed TOML; raise `InputError` with the number of the invalid line."""
     try:
         data = read_toml(text)
     except (ValueError, OverflowError, RecursionError) as error:
@@ -65,10 +65,10 @@ def parse(text: str, source: str) -> dict[str, Any]:
 
 
 def shape_faults(data: dict[str, Any]) -> list[InputFault]:
-    """Return everything that is wrong with the shape of a parsed study file."""
+    """Return all schema faults of a parsed study file."""
     design, faults = data.get("design"), []
     if isinstance(design, dict) and "samples" not in design:
-        if design.get("method") not in IMPORTED:  # a file of rows has its own size
+        if design.get("method") not in IMPORTED:  # a file of rows defines its own size
             faults.append(InputFault(("design", "samples"), MISSING))
     try:
         StudyFile.model_validate(data)
@@ -78,26 +78,26 @@ def shape_faults(data: dict[str, Any]) -> list[InputFault]:
 
 
 def _is_meant(missing: InputFault, other: InputFault) -> bool:
-    """Return whether the misspelt key of another fault stands for a missing key."""
+    """Return whether the unknown key of another fault is probably a misspelt missing key."""
     *table, key = missing.path
     beside = missing.problem.startswith(MISSING) and other.path[:-1] == tuple(table)
     return beside and f"did you mean '{key}'?" in other.problem
 
 
 def sound_entries(data: dict[str, Any], faults: list[InputFault]) -> dict[str, dict[str, Any]]:
-    """Return the entries without a fault of shape, so that they can be checked further.
+    """Return the entries without schema faults, for further checks.
 
     Parameters
     ----------
     data : dict
-        As parsed.
+        Parsed file.
     faults : list of InputFault
-        What `shape_faults` found.
+        Result of `shape_faults`.
 
     Returns
     -------
     dict
-        Every table of a study file, perhaps empty: key -> value as parsed.
+        Every table of a study file, possibly empty: key -> value as parsed.
     """
     broken = {fault.path for fault in faults if len(fault.path) == 1}
     sound = {
@@ -106,7 +106,7 @@ def sound_entries(data: dict[str, Any], faults: list[InputFault]) -> dict[str, d
     }
     for key, value in sound["analysis"].items():
         sound["analysis"][key] = value.copy() if isinstance(value, list | dict) else value
-    # From the end, so that places in a list keep their numbers until they are removed.
+    # From the end, so that indices in a list stay valid until they are removed.
     for path in sorted((fault.path for fault in faults if len(fault.path) > 1), reverse=True):
         _remove(sound, path[:3] if path[0] == "analysis" else path[:2])
     return sound
@@ -125,7 +125,7 @@ def _remove(entries: Any, path: tuple[str | int, ...]) -> None:
 def _fault(error: dict[str, Any]) -> InputFault:
     path, law = list(error["loc"]), None
     if path[0] == "uncertain" and len(path) > 2:
-        # Pydantic puts into the path the kind of entry, and then the law's name.
+        # Pydantic adds the kind of entry and the name of the law to the path.
         tied = path.pop(2) == "equals"
         law = Tied if tied else LAWS[path.pop(2)] if len(path) > 2 else None
     match error["type"]:
@@ -141,7 +141,7 @@ def _fault(error: dict[str, Any]) -> InputFault:
 
 
 def _allowed(law: type[BaseModel] | None, path: Sequence[Any]) -> tuple[str, list[str]]:
-    """Return the allowed keys in place of an unknown key: kind and names."""
+    """Return the kind and the names of the keys allowed in place of an unknown key."""
     if law is not None:
         common = list(Law.model_fields)[1:] if law is not Tied else []  # last, but the source
         arguments = [name for name in law.model_fields if name not in common]

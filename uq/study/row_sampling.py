@@ -1,4 +1,4 @@
-"""The rows of a study: any range of them, from the unit cube to physical inputs, bit for bit.
+"""Rows of a study: any range, from the unit cube to physical inputs, reproducible to the bit.
 
 Further samples append rows: row = (j * replicates + r) * blocks + b for base point j, replicate r
 and block b of its group. Where a sample has units and repeats, it has one block, and
@@ -30,9 +30,9 @@ class Rows(NamedTuple):
     Attributes
     ----------
     x : ndarray, shape (n, d)
-        All parameters of the model, uncertain or not, in declared order; C-contiguous.
+        All parameters of the model, uncertain or fixed, in declared order; C-contiguous.
     seed : ndarray of uint64, shape (n,)
-        For models that draw random numbers; rows that the design compares share a seed.
+        Seeds of random models; rows that the design compares share a seed.
     replicate : ndarray of int32, shape (n,)
     group : ndarray of int64, shape (n,)
         Base point of the replicate's design.
@@ -48,12 +48,12 @@ class Rows(NamedTuple):
 
     @classmethod
     def without_design(cls, x: Floats, seed: NDArray[np.uint64]) -> "Rows":
-        """Return rows that have no place in a design."""
+        """Return rows that do not belong to a design."""
         zeros = np.zeros(len(x), np.int64)
         return cls(x, seed, zeros.astype(np.int32), zeros, zeros.astype(np.int16))
 
     def part(self, first: int, last: int) -> "Rows":
-        """Return the rows from `first` to before `last` of these."""
+        """Return the rows first..last, without `last`."""
         fields: list[NDArray[Any]] = [field[first:last] for field in self]
         return Rows(*fields)
 
@@ -66,7 +66,7 @@ def block_labels(study: "Study") -> tuple[str, ...]:
 
 
 def group_size(study: "Study") -> int:
-    """Return the number of rows that the indices use together: 1 for plain designs."""
+    """Return the number of rows per group for sensitivity indices: 1 for plain designs."""
     return len(block_labels(study))
 
 
@@ -76,7 +76,7 @@ def rows(study: "Study") -> int:
 
 
 def rows_per_sample(study: "Study") -> int:
-    """Return the number of rows that one more sample of each replicate adds."""
+    """Return the number of rows added by one more sample of each replicate."""
     design = study.design
     return design.replicates * group_size(study) * design.rows_of_a_sample
 
@@ -88,12 +88,12 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
     ----------
     study : Study
     start, stop : int
-        Any range within 0..rows(study); it need not respect groups.
+        Any range within 0..rows(study); it may divide groups.
 
     Returns
     -------
     Rows
-        Row i depends, to the bit, only on the study and i, not on the range.
+        Row i depends only on the study and on i, not on the range, to the bit.
     """
     table, labels = study.design, block_labels(study)
     place, within = np.divmod(np.arange(start, stop), table.rows_of_a_sample)
@@ -184,7 +184,7 @@ def physical(study: "Study", unit: Floats) -> Floats:
 
 
 def _dependent(study: "Study") -> list[int]:
-    """Return the columns of the inputs that depend on each other, in the order of their matrix."""
+    """Return the columns of the dependent inputs, in the order of their correlation matrix."""
     assert study.dependence is not None
     return [list(study.uncertain).index(name) for name in study.dependence.parameters]
 
@@ -193,9 +193,9 @@ def _by_their_laws(study: "Study", unit: Floats) -> Floats:
     """Map points of the unit cube, with their dependence, to all parameters of the model."""
     points = dict(zip(study.uncertain, unit.T, strict=True))
     columns: dict[str, Floats] = {}
-    # Factors come after the inputs that they scale.
+    # Factors are computed after the inputs that they scale.
     for name, law in sorted(study.uncertain.items(), key=lambda entry: entry[1].times is not None):
-        # A contiguous copy: for strided data numpy may take another path with other last bits.
+        # A contiguous copy: for strided data numpy may use another loop with different last bits.
         u, bounds = np.ascontiguousarray(points[name]), study.bounds(name)
         if law.times is None:
             columns[name] = ppf_within(law, u, bounds)
@@ -207,7 +207,7 @@ def _by_their_laws(study: "Study", unit: Floats) -> Floats:
 
 
 def _all_parameters(study: "Study", count: int, columns: Mapping[str, Floats]) -> Floats:
-    """Return rows of all parameters: those given, constants, and parameters that equal others."""
+    """Return rows of all parameters: given columns, constants, and tied parameters."""
     names = study.model.parameter_names
     x = np.empty((count, len(names)))
     x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
@@ -219,14 +219,14 @@ def _all_parameters(study: "Study", count: int, columns: Mapping[str, Floats]) -
 
 
 def row_seeds(seed: int, *keys: NDArray[np.int64]) -> NDArray[np.uint64]:
-    """Hash a study's seed and the keys of rows into one seed per row.
+    """Return one seed per row: a hash of the study's seed and the keys of the row.
 
     Parameters
     ----------
     seed : int
         0 to 2^63 - 1.
     *keys : ndarray of int, shape (n,)
-        They identify a row.
+        Keys that identify a row.
 
     Returns
     -------

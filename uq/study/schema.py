@@ -1,4 +1,4 @@
-"""JSON Schema of a study file, for editors: keys, choices, and the names each model knows."""
+"""JSON Schema of a study file, for editors: keys, choices, and the names of each model."""
 
 from contextlib import suppress
 from math import isfinite
@@ -21,8 +21,9 @@ Schema = dict[str, Any]
 def json_schema() -> Schema:
     """Return the JSON Schema of study files for the models installed here.
 
-    Draft 7, the newest that TOML plug-ins of editors understand. What needs arithmetic (a law's
-    probability outside the bounds, the order of lower and upper) is left to ``uq check``.
+    It uses Draft 7, the newest draft that TOML plug-ins of editors support. Checks that require
+    arithmetic (the probability of a law outside the bounds, the order of lower and upper) are left
+    to ``uq check``.
 
     Returns
     -------
@@ -52,7 +53,7 @@ def json_schema() -> Schema:
 
 
 class _WithoutNull(GenerateJsonSchema):
-    """Pydantic's generator, for a language that has no null: what may be absent is left out."""
+    """Pydantic's schema generator without null, which TOML lacks: optional keys may be absent."""
 
     def nullable_schema(self, schema: Any) -> Schema:
         return self.generate_inner(schema["schema"])
@@ -67,7 +68,7 @@ class _WithoutNull(GenerateJsonSchema):
 def _models() -> list[Model]:
     models = []
     for name in model_names():
-        with suppress(InputError):  # a broken model keeps its name, without the names it knows
+        with suppress(InputError):  # a broken model is listed by name only
             models.append(find_model(name))
     return models
 
@@ -161,7 +162,7 @@ def _setting(model: Model, name: str, kind: Any) -> Schema:
 
 
 def _limited(schema: Schema, limits: Schema) -> Schema:
-    """Put limits on every number, and write lists of a fixed length as Draft 7 does."""
+    """Return a schema with limits on every number, and lists of fixed length as in Draft 7."""
     if "prefixItems" in schema:
         items = [_limited(item, limits) for item in schema.pop("prefixItems")]
         return {**schema, "items": items}

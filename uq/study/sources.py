@@ -1,7 +1,7 @@
-"""The source files of a module of a model, and of the modules that it imports.
+"""Source files of a model's module, and of the modules that it imports.
 
-These are the files of its package and of imported packages that are not installed, wherever they
-are. Other installed packages have a version; the platform itself is not part of any model.
+These are the files of its package, and of imported packages that are not installed, in any folder.
+Installed packages are identified by their version. The platform itself is not part of a model.
 """
 
 import ast
@@ -30,14 +30,14 @@ def sources_of(module: str) -> tuple[dict[str, bytes], set[str]]:
     Parameters
     ----------
     module : str
-        Its full name; it need not have been imported.
+        Full name; the module need not be imported.
 
     Returns
     -------
     code : dict of str to bytes
-        Module -> its source, or the machine code of an extension; empty if no file exists.
+        Module -> source, or machine code of an extension; empty if no file exists.
     others : set of str
-        Modules imported from elsewhere.
+        Modules imported from other packages.
     """
     package = module.partition(".")[0]
     root = _root(package)
@@ -70,7 +70,7 @@ def sources_of(module: str) -> tuple[dict[str, bytes], set[str]]:
 
 
 def _without_marks(file: Path) -> bytes:
-    """Return a source without byte-order mark and carriage returns, which editors may add."""
+    """Return a source without byte-order mark and carriage returns, which editors may insert."""
     content = file.read_bytes()
     if file.suffix != ".py":
         return content
@@ -86,14 +86,14 @@ def fingerprint(module: str) -> str:
     Parameters
     ----------
     module : str
-        Its full name.
+        Full name of the module.
     """
     code, _ = sources_of(module)
     return digest(code).hexdigest()[:16] if code else ""
 
 
 def digest(sources: Mapping[str, bytes]) -> "hashlib._Hash":
-    """Return a hash of sources by name, which can be extended."""
+    """Return an extensible hash object of named sources."""
     whole = hashlib.sha256()
     for name, source in sorted(sources.items()):
         whole.update(b"%s %d\n" % (name.encode(), len(source)))
@@ -102,16 +102,16 @@ def digest(sources: Mapping[str, bytes]) -> "hashlib._Hash":
 
 
 def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
-    """Return the files of a package from elsewhere with their modification times and sizes.
+    """Return the files of another package with their modification times and sizes.
 
-    The first file of an installed package is enough: all are written together. Our own models
-    count only where they are imported, what they share always.
+    For an installed package the first file is sufficient, since all files are written together. Our
+    own models are included only if they are imported; their shared modules are always included.
 
     Parameters
     ----------
     package : str
     modules : set of str
-        The modules imported from elsewhere.
+        Modules imported from other packages.
     """
     root = _root(package) if package not in sys.stdlib_module_names else None
     if root is None:
@@ -130,14 +130,14 @@ def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
 
 
 def is_installed(package: str) -> bool:
-    """Return whether a package is installed, and so not being edited."""
+    """Return whether a package is installed, and therefore not edited."""
     root = _root(package) if package not in sys.stdlib_module_names else None
     return root is None or root.name in INSTALLED
 
 
 @cache
 def own_models() -> set[str]:
-    """Return the modules of our own models, which manage their compiled code themselves."""
+    """Return the modules of our own models, which manage their own compiled code."""
     points = entry_points(group="vibrolife.models")
     names = ((point.dist.name if point.dist else "", point.module) for point in points)
     return {module for name, module in names if name == DISTRIBUTION}
@@ -156,10 +156,10 @@ def _above(modules: Iterable[str]) -> set[str]:
 
 
 def found_at(package: str) -> Path | None:
-    """Return the file or folder in which Python finds a package; None if it finds none."""
+    """Return the file or folder from which Python imports a package; None if there is none."""
     try:
         spec = find_spec(package)
-    except (ImportError, ValueError):  # ValueError: it was imported, but from nowhere
+    except (ImportError, ValueError):  # ValueError: imported, but without a location
         return None
     places = [*(spec.submodule_search_locations or []), spec.origin] if spec else []
     return Path(places[0]) if places and places[0] else None
@@ -188,10 +188,10 @@ def _is_module(root: Path, name: str) -> bool:
 
 @lru_cache(maxsize=1000)
 def _imported(source: bytes, within: str) -> tuple[str, ...]:
-    """Return the modules that a source imports anywhere, and names that may be modules."""
+    """Return the modules imported anywhere in a source, and names that may be modules."""
     try:
         return tuple(_imports(source, within))
-    except (ImportError, SyntaxError, ValueError):  # reported by whoever imports it
+    except (ImportError, SyntaxError, ValueError):  # reported when the module is imported
         return ()
 
 

@@ -1,4 +1,4 @@
-"""A study file to start from, written for one model."""
+"""Template of a study file for a model."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -23,16 +23,16 @@ _SOURCE = "example: replace with your own"
 
 
 def template(model: Model, reference: str = "") -> str:
-    """Return a commented study file that runs as it is.
+    """Return a commented study file that runs unchanged.
 
     A line that starts with ``#`` and a key is an entry with its default: remove the ``#`` to
-    change it. The first parameters that an example law suits are uncertain.
+    change it. The first parameters for which an example law is valid are uncertain.
 
     Parameters
     ----------
     model : Model
     reference : str
-        How the model is named on the command line, which a study does not do.
+        Reference to the model on the command line; it is not part of a study.
 
     Returns
     -------
@@ -80,9 +80,9 @@ def _lines(lines: Iterable[str]) -> str:
 
 
 def _example_law(parameter: Parameter, nominal: float) -> Law | None:
-    """Return a law around the nominal value that the bounds allow, if possible of 10 % scatter.
+    """Return an example law around the nominal value within the bounds, 10 % scatter if possible.
 
-    A parameter that is infinite by default has none.
+    None for a parameter that is infinite by default.
     """
     if not isfinite(nominal):
         return None
@@ -148,7 +148,7 @@ def _entries(
 ) -> Iterator[str]:
     for name, field in table.model_fields.items():
         value = (examples | given).get(name, field.default)
-        if value is not None:  # few studies have the others, and TOML has no word for nothing
+        if value is not None:  # the others are rarely used, and TOML has no null
             yield f"# {field.description}"
             yield f"{'' if name in given else '#'}{name} = {toml(value)}"
 

@@ -1,4 +1,4 @@
-"""The names of the elements of an output with dimensions."""
+"""Names of the elements of an output with dimensions."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 MOST_PLACES = 500
-"""Elements of an output that are described one by one, unless a study names the output."""
+"""Largest number of elements described individually, unless a study names the output."""
 
 
 Place = tuple[str, tuple[int, ...], dict[str, Any]]
@@ -23,9 +23,9 @@ def places(output: str, coordinates: Mapping[str, Any], most: float = inf) -> It
     ----------
     output : str
     coordinates : dict of str to array
-        Of each dimension, in order.
+        Coordinates of each dimension, in order.
     most : float
-        How many at most, evenly spread along each dimension.
+        Largest number of elements, evenly spread along each dimension.
 
     Yields
     ------
@@ -40,7 +40,7 @@ def places(output: str, coordinates: Mapping[str, Any], most: float = inf) -> It
 
 
 def place_of(name: str, coordinates: Mapping[str, Any]) -> list[Place]:
-    """Return the place of an element in a list, which is empty if there is none of this name.
+    """Return a list with the element of this name; empty if there is none.
 
     Numbers may be written in any way: ``[instant=3600]`` is ``[instant=3600.0]``.
     """
@@ -50,7 +50,7 @@ def place_of(name: str, coordinates: Mapping[str, Any]) -> list[Place]:
 
 
 def same_name(name: str, names: Iterable[str]) -> str:
-    """Return the one of several names that means the same, else the name; see `place_of`."""
+    """Return the equivalent name from a list, or the name itself if none; see `place_of`."""
     return {_read(candidate): candidate for candidate in names}.get(_read(name), name)
 
 
@@ -62,7 +62,7 @@ def _by_name(
 
 
 def _read(name: str) -> tuple[Any, ...]:
-    """Return the parts of a name, its coordinates as numbers where they are."""
+    """Return the parts of a name, with numeric coordinates as numbers."""
     output, _, rest = name.partition("[")
     parts = (part.partition("=") for part in rest.removesuffix("]").split(","))
     return output, *((dim.strip(), _number(text.strip())) for dim, _, text in parts)
@@ -76,7 +76,7 @@ def _number(text: str) -> float | str:
 
 
 def spread(lengths: Sequence[int], most: float) -> list[list[int]]:
-    """Return places along each dimension, evenly spread, that make at most so many elements.
+    """Return evenly spread indices along each dimension, for at most `most` elements.
 
     The longest dimensions are thinned first.
 
@@ -96,7 +96,7 @@ def spread(lengths: Sequence[int], most: float) -> list[list[int]]:
 
 
 def whole_name(output: str) -> str:
-    """Return the name of all elements of an output together: ``work_rate[:]``."""
+    """Return the name for all elements of an output together: ``work_rate[:]``."""
     return f"{output}{_WHOLE}"
 
 

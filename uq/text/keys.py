@@ -1,6 +1,6 @@
-"""The key of a number: its path in the JSON of its verb, as in `outputs/life/quantiles/0.05`.
+"""Keys of numbers: the path in the JSON of a verb, as in `outputs/life/quantiles/0.05`.
 
-A key of a verb other than `uq summary` begins with its name, options in brackets:
+A key of a verb other than `uq summary` begins with the name of the verb, with options in brackets:
 ``sensitivity[method=delta]/outputs/y/delta/x1``. In names, ``~`` is written ``~0`` and ``/`` is
 written ``~1``, as in JSON Pointer (RFC 6901).
 """
@@ -13,7 +13,7 @@ from uq.errors import InputError, nearest
 
 SUMMARY = "summary"
 
-_LONGEST = 200  # characters of a key in an error line
+_LONGEST = 200  # largest number of characters of a key in an error line
 
 Path = tuple[str, ...]
 Options = Mapping[str, str]
@@ -21,14 +21,14 @@ Json = Mapping[str, Any]
 
 
 class Key(NamedTuple):
-    """A key, taken apart.
+    """The parts of a key.
 
     Attributes
     ----------
     verb : str
     options : dict of str to str
     path : tuple of str
-        In the JSON of the verb.
+        Path in the JSON of the verb.
     """
 
     verb: str
@@ -44,10 +44,10 @@ def key_of(
     Parameters
     ----------
     *path : str or int
-        In the JSON of the verb.
+        Path in the JSON of the verb.
     verb : str
     options : dict of str to str, optional
-        Those that are None are left out.
+        Options that are None are omitted.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def taken_apart(key: str, verbs: Mapping[str, Iterable[str]]) -> Key:
     Raises
     ------
     InputError
-        When the verb does not have such an option.
+        The verb does not have this option.
     """
     match = re.match(rf"({'|'.join(map(re.escape, verbs))})(?:\[(.*?)\])?(?:/|$)", key)
     verb, inside = (match[1], match[2]) if match else (SUMMARY, None)
@@ -84,7 +84,7 @@ def taken_apart(key: str, verbs: Mapping[str, Iterable[str]]) -> Key:
     begin = "|".join(
         re.escape(option if option.endswith(".") else f"{option}=") for option in names
     )
-    for text in re.split(f",(?={begin})", inside) if inside else []:  # values may have commas
+    for text in re.split(f",(?={begin})", inside) if inside else []:  # values may contain commas
         name, equals, value = text.partition("=")
         begins = any(name.startswith(option) for option in names if option.endswith("."))
         if not (name in names or begins) or not equals:
@@ -105,7 +105,7 @@ def value_at(whole: Any, path: Path) -> Any:
     Raises
     ------
     KeyError
-        When the path leads nowhere.
+        The path does not exist.
     """
     for part in path:
         if isinstance(whole, list):
@@ -120,7 +120,7 @@ def value_at(whole: Any, path: Path) -> Any:
 
 
 def numbers_in(entry: Any) -> dict[str, Any]:
-    """Return a number with its explanations; empty where there is no number.
+    """Return a number with its explanations; empty if there is no number.
 
     Parameters
     ----------
@@ -140,18 +140,18 @@ def numbers_in(entry: Any) -> dict[str, Any]:
 
 
 def is_number(value: object) -> bool:
-    """Whether a value of JSON is a number, or null in its place."""
+    """Whether a JSON value is a number, or null in place of a number."""
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
 
 
 def _holds_numbers(entry: object) -> bool:
-    """Whether there is more than words in a part of JSON."""
+    """Whether a part of JSON contains numbers."""
     words = isinstance(entry, list) and all(isinstance(element, str) for element in entry)
     return isinstance(entry, dict | list) and not words
 
 
 def paths_of_numbers(whole: Any, path: Path = ()) -> Iterator[Path]:
-    """Yield the path of every number in JSON, and of every estimate as a whole."""
+    """Yield the path of every number and of every estimate in JSON."""
     if path and numbers_in(whole):
         yield path
     inner = enumerate(whole) if isinstance(whole, list) else ()
@@ -161,7 +161,7 @@ def paths_of_numbers(whole: Any, path: Path = ()) -> Iterator[Path]:
 
 
 def no_such_key(key: Key, whole: Any, verbs: Iterable[str]) -> InputError:
-    """Return the error about a key that leads to no number, with the nearest one that does.
+    """Return the error for a key without a number, with the closest valid key.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def no_such_key(key: Key, whole: Any, verbs: Iterable[str]) -> InputError:
     whole : dict
         The JSON of its verb.
     verbs : iterable of str
-        With one of which it might have been meant to begin.
+        Verbs with which the intended key may begin.
     """
 
     def text(path: Path) -> str:
@@ -184,7 +184,7 @@ def no_such_key(key: Key, whole: Any, verbs: Iterable[str]) -> InputError:
 
 
 def _cut(key: str) -> str:
-    """Return a key for an error line, cut if it is longer than any."""
+    """Return a key for an error line, shortened to the maximum length."""
     line = " ".join(key.split())
     return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}..."
 

@@ -1,4 +1,4 @@
-"""Values as written in a TOML file."""
+"""TOML literals: reading and writing of values, and text safe for a terminal."""
 
 import json
 import re
@@ -34,7 +34,7 @@ def _quoted(text: str) -> str:
 
 
 def shown(value: Any, width: int = 60) -> str:
-    """Return a value for an error line: as a TOML literal, cut to `width` characters."""
+    """Return a value as a TOML literal for an error line, shortened to `width` characters."""
     try:
         text = toml(value)
     except (ValueError, RecursionError):  # thousands of digits, or of brackets
@@ -42,7 +42,7 @@ def shown(value: Any, width: int = 60) -> str:
     return text if len(text) <= width else f"{text[: width - 3]}..."
 
 
-# More parts than any key has: the time of Python's parser grows with their square.
+# Limit of the parts of a key: the time of Python's parser grows with their square.
 _MOST_PARTS = 64
 _LONG_KEY = re.compile(
     rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}"""
@@ -50,16 +50,16 @@ _LONG_KEY = re.compile(
 
 
 def read_toml(text: str) -> dict[str, Any]:
-    """Read TOML, with numbers as in `read_number`.
+    """Return parsed TOML, with numbers as in `read_number`.
 
     Raises
     ------
     ValueError
-        When it is not TOML, or a key has absurdly many parts.
+        The text is not TOML, or a key has too many parts.
     OverflowError
-        When a number is too large.
+        A number is too large.
     RecursionError
-        When it is nested too deeply.
+        The text is nested too deeply.
     """
     if match := _LONG_KEY.search(text):
         line = text.count("\n", 0, match.start()) + 1
@@ -68,14 +68,14 @@ def read_toml(text: str) -> dict[str, Any]:
 
 
 def read_number(text: str) -> float:
-    """Return a number; infinity only if written as such.
+    """Return a number from text; infinite only if written as infinity.
 
     Raises
     ------
     ValueError
-        When it is not a number.
+        The text is not a number.
     OverflowError
-        When it is too large, such as 1e400.
+        The number is too large, such as 1e400.
     """
     number = float(text)
     if isinf(number) and "inf" not in text.lower():
@@ -85,19 +85,19 @@ def read_number(text: str) -> float:
     return number
 
 
-# Control characters except the line feed, and those that change the direction of text.
+# Control characters except the line feed, and characters that change the direction of text.
 _UNPRINTABLE = re.compile(
     "[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
 
 
 def plain(text: str) -> str:
-    r"""Return a text that cannot control a terminal: ``\u001b`` for an escape character."""
+    r"""Return a text without control characters: ``\u001b`` replaces an escape character."""
     return _UNPRINTABLE.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def without_control(text: str) -> str:
-    """Return a text from a file as in `plain`; tabs and line ends, which are harmless, stay."""
+    """Return a text from a file as in `plain`; harmless tabs and line ends are kept."""
     return re.sub(r"[^\t\r]+", lambda match: plain(match[0]), text)
 
 

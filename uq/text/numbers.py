@@ -1,4 +1,4 @@
-"""Numbers and laws as text, for tables on a terminal and in a report."""
+"""Formatting of numbers and laws as text, for tables on a terminal and in a report."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -10,35 +10,35 @@ from uq.text.quantities import Written
 from uq.text.units import PREFIXED, PURE, ReadableUnit, beside, powers, time_unit, unit_of
 
 HUGE = 1e9
-"""Numbers of rows beyond this are read as powers of ten."""
+"""Numbers of rows above this limit are written as powers of ten."""
 
 
 def capitalized(text: str) -> str:
-    """Return text with a capital first letter; symbols such as ``k`` or ``x1`` stay as they are."""
+    """Return text with a capital first letter; symbols such as ``k`` or ``x1`` do not change."""
     first = text.split(" ", 1)[0].rstrip(",.:;")
     symbol = len(first) == 1 and first != "a" or re.search(r"[\d_]", first)
     return text if symbol else f"{text[:1].upper()}{text[1:]}"
 
 
 def number(value: float | None, resolution: float = 0.0) -> str:
-    """Return a number for a table, to five digits or its resolution; a dash if there is none."""
+    """Return a number for a table, to five digits or its resolution; a dash if it is missing."""
     return "-" if value is None else f"{value:.{digits(value, resolution, 5)}g}"
 
 
 def digits(value: float, resolution: float, least: int) -> int:
-    """Return the significant digits of a number that show differences of this size.
+    """Return the number of significant digits that resolves differences of this size.
 
     Parameters
     ----------
     value : float
     resolution : float
-        0 where `least` digits suffice.
+        Difference to resolve; 0 if `least` digits are sufficient.
     least : int
 
     Returns
     -------
     int
-        At most 17, which tell all numbers apart.
+        At most 17, which distinguish all numbers.
     """
     if not (resolution > 0 and isfinite(value) and value):
         return least
@@ -46,24 +46,24 @@ def digits(value: float, resolution: float, least: int) -> int:
 
 
 def quantity(value: float, units: str) -> str:
-    """Return a value [units, as in CF] with the unit in which it is read: ``13.75 kN m⁻¹``."""
+    """Return a value [CF units] in a readable unit: ``13.75 kN m⁻¹``."""
     if isnan(value):
         return "-"
     return in_unit(value, unit_of(units, value))
 
 
 def in_unit(value: float, unit: ReadableUnit) -> str:
-    """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
+    """Return a value [CF unit] as text in a readable unit: ``250 µm``, ``12°``, or a number."""
     return beside(number(value / unit.size), unit.name)
 
 
 def in_brackets(unit: ReadableUnit) -> str:
-    """Return a unit as it follows a name: `` [µm]``; "" for a pure number."""
+    """Return a unit in brackets, to follow a name: `` [µm]``; "" for a pure number."""
     return "" if unit.name == "1" else f" [{powers(unit.name)}]"
 
 
 def duration(seconds: float | None) -> str:
-    """Return a time in hours, days or years; "" below one hour.
+    """Return a time as text in hours, days or years; "" below one hour.
 
     Parameters
     ----------
@@ -81,10 +81,10 @@ def duration(seconds: float | None) -> str:
 
 
 def threshold(value: float, units: str) -> str:
-    """Return a threshold [units, as in CF] as it was written: ``24 hours``, ``12°``.
+    """Return a threshold [CF units] as written by the user: ``24 hours``, ``12°``.
 
-    One without a unit of its own is in the unit in which it is read, or as it was written where
-    five digits do not tell it from others.
+    A threshold written without a unit is converted to a readable unit. It is returned as written if
+    five digits do not distinguish it from others.
     """
     if isinstance(value, Written):
         return beside(value.number, value.unit.name)
@@ -101,18 +101,18 @@ def compared(name: str, is_angle: bool) -> str:
 
 
 def estimated(label: str, units: str, variable: str = "", asked: Iterable[float] = ()) -> str:
-    """Return the label of an estimate for a person: ``P(>86400.0)`` is ``P(> 24 hours)``.
+    """Return the readable label of an estimate: ``P(>86400.0)`` becomes ``P(> 24 hours)``.
 
     Parameters
     ----------
     label : str
-        Also the name of an event: ``P(life<86400.0)``.
+        Label of an estimate, or name of an event: ``P(life<86400.0)``.
     units : str
         CF unit of the output.
     variable : str
-        The compared variable, if it is not the one in the label: ``|psi|``.
+        The compared variable, if it differs from the variable in the label: ``|psi|``.
     asked : iterable of float
-        The thresholds of the study, which may have units of their own.
+        Thresholds of the study, which may have their own units.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def estimated(label: str, units: str, variable: str = "", asked: Iterable[float]
 
 
 def percent(share: float) -> str:
-    """Return a share in per cent: to a tenth, or more digits close to 0 and 100 %."""
+    """Return a share in per cent, to a tenth, with more digits close to 0 and 100 %."""
     if share in (0.0, 1.0):
         return f"{100 * share:.0f} %"
     if 0 < share < 0.01:
@@ -141,19 +141,19 @@ TO_THESE_DIGITS = "exact to these digits"
 
 
 def percent_interval(low: float, high: float) -> str:
-    """Return the ends of the interval of a share in per cent, or that they are the share shown."""
+    """Return the interval of a share in per cent, or a note that its ends equal the shown share."""
     return TO_THESE_DIGITS if percent(low) == percent(high) else percent_range(low, high)
 
 
 def percent_range(low: float, high: float) -> str:
-    """Return two shares in per cent, one of them if they are read alike."""
+    """Return two shares in per cent, or a single one if both have the same text."""
     if percent(low) == percent(high):
         return percent(low)
     return f"{percent(low).removesuffix(' %')} to {percent(high)}"
 
 
 def rows_in_words(rows: float) -> str:
-    """Return a number of rows, rounded up to two digits; a huge one as a power of ten."""
+    """Return a number of rows, rounded up to two digits; a power of ten if very large."""
     if rows > HUGE:
         return f"{rows:.0e}".replace("e+", "e")
     digit = 10 ** max(floor(log10(rows)) - 1, 0)
@@ -175,12 +175,12 @@ def counted(count: int, singular: str, plural: str = "") -> str:
 
 
 def grouped(rows: int) -> str:
-    """Return a number of rows with its thousands apart."""
+    """Return a number of rows with separated thousands."""
     return f"{rows:,}".replace(",", " ")
 
 
 def listed(labels: Sequence[str], most: int = 8) -> str:
-    """Return the labels of a category; of many, the first and the last."""
+    """Return the labels of a category as a list; only the first and last if there are many."""
     displayed = labels if len(labels) <= most else (*labels[:3], "...", labels[-1])
     return ", ".join(displayed)
 
@@ -214,7 +214,7 @@ def _arguments(stated: Any) -> dict[str, Any]:
     without = {"distribution", "source", "times", "level"}
     given: dict[str, Any] = stated.model_dump(exclude=without, exclude_none=True)
     if given.get("file") is not None:
-        given.pop("values", None)  # a result keeps the file's name alone
+        given.pop("values", None)  # a result keeps only the name of the file
     return given
 
 
@@ -231,13 +231,13 @@ _BEFORE_POWER = re.compile(rf"(?<=\w) (?=\w{{1,3}}[⁻⁰¹²³⁴-⁹])|{_POWER
 def minus(text: str) -> str:
     """Return text with minus signs instead of hyphens in its numbers: ``−1.5e−05``.
 
-    Names, dates, laws of a study file in code and options of commands keep their hyphens.
+    Hyphens in names, dates, code of laws in a study file and options of commands do not change.
     """
     return _NUMBER.sub(lambda match: match[0].replace("-", "\N{MINUS SIGN}"), text)
 
 
 def printed(text: str) -> str:
-    """Return text for a page: with minus signs, a dash for no number, and numbers in one line."""
+    """Return text for a page: minus signs, a dash for a missing number, no breaks in numbers."""
     if text == "-":
         return "\N{EN DASH}"
     text = _UNIT.sub(lambda match: match[0].replace(" ", "\N{NO-BREAK SPACE}"), minus(text))

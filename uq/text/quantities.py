@@ -1,4 +1,4 @@
-"""Quantities as a person writes them: ``24 hours``, ``12 degrees``, ``30 mm/s``."""
+"""Parser of quantities with units: ``24 hours``, ``12 degrees``, ``30 mm/s``."""
 
 import re
 from fractions import Fraction
@@ -27,26 +27,26 @@ _QUANTITY = re.compile(rf"\s*((?>{_NUMBER}))\s*({_UNIT})")
 EXAMPLE = '"24 hours", "250 um"'
 
 SHAPE = rf"^\s*{_NUMBER}\s*{_UNIT}$"
-"""Of a quantity, for editors."""
+"""Regular expression of a quantity, for editors."""
 
 _PART = re.compile(r"\s*([/*·]?)\s*([A-Za-zµμΩ°%]+)(?:\^|\*\*)?([-⁻]?[\d⁰¹²³⁴-⁹]{1,2})?\s*")
 _PLAIN_DIGITS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 
 Dimensions = dict[str, int]
-"""Unit without a prefix -> its power."""
+"""Unit without prefix -> its power."""
 
 
 class Written(float):
     """A number in its CF unit that was written in another unit.
 
-    It is a plain number wherever its unit does not matter.
+    It behaves as a plain number.
 
     Attributes
     ----------
     number : str
-        As written.
+        The number as written.
     unit : ReadableUnit
-        As written, in the spelling of tables.
+        The unit as written, in the spelling of tables.
     dimensions : dict of str to int
     """
 
@@ -56,7 +56,7 @@ class Written(float):
 
 
 def read_quantity(text: str) -> Written:
-    """Return a number with its unit as a number in the CF unit.
+    """Return a quantity converted to the CF unit.
 
     Parameters
     ----------
@@ -68,12 +68,12 @@ def read_quantity(text: str) -> Written:
     Returns
     -------
     Written
-        To the bit the number that one would write in the CF unit; for degrees x pi / 180.
+        Equal to the bit to the number written in the CF unit; for degrees x pi / 180.
 
     Raises
     ------
     ValueError
-        When it is not a number with a unit.
+        The text is not a number with a unit.
 
     Examples
     --------
@@ -95,16 +95,16 @@ def read_quantity(text: str) -> Written:
 
 
 def misfit(text: str, name: str, units: str) -> str:
-    """Return why a quantity is in a unit that does not fit; "" where it fits.
+    """Return the reason why the unit of a quantity is incompatible; "" if it is compatible.
 
     Parameters
     ----------
     text : str
-        As `read_quantity` takes it.
+        Quantity, as for `read_quantity`.
     name : str
-        The parameter, output or key to which the quantity belongs.
+        Parameter, output or key to which the quantity belongs.
     units : str
-        CF unit of the latter.
+        CF unit of this parameter, output or key.
     """
     written = read_quantity(text)
     size, turns, dimensions, _ = _taken_apart(units)
@@ -119,8 +119,8 @@ def misfit(text: str, name: str, units: str) -> str:
 
 
 def fault_of_unit(unit: str) -> str:
-    """Return why a string cannot be the unit of a parameter or output; "" where it can."""
-    if meant := _DECODED.get(unit.lower()):  # which xarray would turn into time differences
+    """Return the reason why a unit string is invalid; "" if it is valid."""
+    if meant := _DECODED.get(unit.lower()):  # xarray would decode it as a time difference
         return f"write it as '{meant}'"
     place = 0
     while match := _PART.match(unit, place):
@@ -143,14 +143,14 @@ def allowed_units(units: str) -> tuple[str, ...]:
 
 
 def _taken_apart(text: str) -> tuple[Fraction, int, Dimensions, str]:
-    """Return the size of a unit, degrees apart, how often they occur, its dimensions and name."""
+    """Return size (without degrees), power of degrees, dimensions and name of a unit."""
     size, turns, dimensions, names = Fraction(1), 0, Dimensions(), list[str]()
     if text == "1":
         return size, turns, dimensions, text
     place = 0
     while place < len(text):
         match = _PART.match(text, place)
-        if match is None:  # of no known form: a unit of its own
+        if match is None:  # unknown form: a unit of its own
             return Fraction(1), 0, {text: 1}, text
         place = match.end()
         power = int((match[3] or "1").translate(_PLAIN_DIGITS)) * (-1 if match[1] == "/" else 1)
@@ -171,7 +171,7 @@ def _taken_apart(text: str) -> tuple[Fraction, int, Dimensions, str]:
 
 
 def _of_symbol(symbol: str) -> tuple[str, Fraction, str]:
-    """Return the unit without prefix, the size, and the name of one factor of a unit."""
+    """Return unit without prefix, size and name of one factor of a unit."""
     for name, word in _TIMES.items():
         if symbol in (name, word, word.removesuffix("s")):
             return "s", Fraction(_SECONDS[name]), name
@@ -188,22 +188,22 @@ def _of_symbol(symbol: str) -> tuple[str, Fraction, str]:
 
 
 def read_threshold(option: str, text: str, name: str, units: str) -> float:
-    """Return a number that an option of the command line gives, with or without a unit.
+    """Return the number in a command-line option, with or without a unit.
 
     Parameters
     ----------
     option : str
-        Such as ``--by``.
+        Name of the option, such as ``--by``.
     text : str
     name : str
         Name of the quantity for messages.
     units : str
-        CF unit of the latter, and of a plain number.
+        CF unit of the quantity, and of a plain number.
 
     Raises
     ------
     InputError
-        When it is no number, or in a unit that does not fit.
+        The text is not a number, or its unit is incompatible.
     """
     try:
         return float(text)

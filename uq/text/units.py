@@ -1,4 +1,4 @@
-"""Units in which quantities are read, and symbols of formulas, as text."""
+"""Readable units of quantities, and symbols of formulas, as text."""
 
 import re
 from collections.abc import Iterable
@@ -11,7 +11,7 @@ import numpy as np
 PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "F", "ohm", "Pa", "rad", "Hz"}
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 3: "k", 6: "M", 9: "G"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_SMALLEST, _LARGEST = 0.1, 1e4  # numbers that are read as they are
+_SMALLEST, _LARGEST = 0.1, 1e4  # range of numbers that need no prefix
 _SMALLEST_IN_DEGREES = 1e-3  # rad
 
 DEGREES = "°"
@@ -19,7 +19,7 @@ _TIME_WORDS = ("minutes", "hours", "days", "years")
 
 
 class ReadableUnit(NamedTuple):
-    """A unit for readers: its name, as in CF but for prefixes, and its size in the CF unit."""
+    """A readable unit: its name, as in CF except for prefixes, and its size in the CF unit."""
 
     name: str
     size: float
@@ -30,7 +30,7 @@ PURE = ReadableUnit("1", 1.0)
 
 
 def beside(number: str, unit: str) -> str:
-    """Return a number with its unit, if it has one: ``250 µm``, ``12°``, ``3 × 10⁻¹⁵ m² N⁻¹``."""
+    """Return a number followed by its unit, if any: ``250 µm``, ``12°``, ``3 × 10⁻¹⁵ m² N⁻¹``."""
     if number == "1" and unit in _TIME_WORDS:
         unit = unit.removesuffix("s")
     if unit in ("", "1"):
@@ -47,30 +47,30 @@ _TIME_UNITS = {
     2 * _DAY: ReadableUnit("days", _DAY),
     2 * _YEAR: ReadableUnit("years", _YEAR),
 }
-"""Units of time by the time from which each is used [s]."""
+"""Units of time, by the smallest time [s] for which each is used."""
 
 
 def time_unit(seconds: float) -> ReadableUnit:
-    """Return the usual unit of a time [s] that is not negative."""
+    """Return the usual unit of a non-negative time [s]."""
     return [unit for shortest, unit in _TIME_UNITS.items() if seconds >= shortest][-1]
 
 
 def unit_of(units: str, typical: float) -> ReadableUnit:
-    """Return the unit in which a quantity is read.
+    """Return the readable unit of a quantity.
 
     Parameters
     ----------
     units : str
         CF unit string: ``m``, ``N m-1``.
     typical : float
-        A typical value, in `units`; NaN or 0 if unknown. A median suits numbers in a table, the
-        largest magnitude an axis.
+        A typical value, in `units`; NaN or 0 if unknown. Use the median for numbers in a table, and
+        the largest magnitude for an axis.
 
     Returns
     -------
     ReadableUnit
-        250 µm for 0.00025 m; degrees for radians; hours, days or years for long times; ``10⁻¹⁵ m2
-        N-1`` for a unit that takes no prefix. The unit itself for a pure number.
+        µm for 0.00025 m; degrees for radians; hours, days or years for long times; ``10⁻¹⁵ m2
+        N-1`` for a unit that takes no prefix; the unit itself for a pure number.
     """
     size = abs(typical) if isfinite(typical) else 0.0
     if units == "s" and size < inf and time_unit(size).name != "seconds":
@@ -87,7 +87,7 @@ def unit_of(units: str, typical: float) -> ReadableUnit:
 
 
 def typical(values: Iterable[float]) -> float:
-    """Return the median of the magnitudes that are neither 0 nor infinite; 0 if there is none."""
+    """Return the median magnitude of the finite nonzero values; 0 if there is none."""
     sizes = np.abs(values if isinstance(values, np.ndarray) else np.fromiter(values, float))
     positive = sizes[np.isfinite(sizes) & (sizes > 0)]
     return (
@@ -98,7 +98,7 @@ def typical(values: Iterable[float]) -> float:
 
 
 def powers(unit: str) -> str:
-    """Return a CF unit as it is printed: ``m2 N-1`` becomes ``m² N⁻¹``, ``ohm`` an omega."""
+    """Return a CF unit as printed: ``m2 N-1`` becomes ``m² N⁻¹``, and ``ohm`` an omega."""
     unit = re.sub(r"(?<=[A-Za-z])-?\d+", lambda match: match[0].translate(_RAISED), unit)
     return re.sub(r"\bohm\b", "Ω", unit)
 
@@ -110,12 +110,12 @@ LETTERS = (
 
 _LETTER = rf"(?:{'|'.join(LETTERS)})"
 WORD = re.compile(rf"(?<![A-Za-z]){_LETTER}(?![A-Za-z])")
-"""A letter by its name."""
+"""Regular expression of the name of a Greek letter."""
 
 IN_TEXT = re.compile(
     rf"(?<![\w-])(?:{_LETTER}(?:_[A-Za-z0-9]+|\d+)?|[A-Za-z]_[A-Za-z0-9]+)(?!\w)(?:\(0\))?"
 )
-"""A symbol among words."""
+"""Regular expression of a symbol in a text."""
 
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
@@ -127,7 +127,7 @@ def symbol(text: str) -> str:
 
 
 def readable(text: str) -> str:
-    """Return words with the symbols among them as by `symbol`, and minus signs as such."""
+    """Return text with its symbols as in `symbol`, and with minus signs."""
     text = IN_TEXT.sub(lambda match: symbol(match[0]), text)
     return text.replace(" - ", " \N{MINUS SIGN} ")
 
