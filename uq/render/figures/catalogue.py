@@ -46,7 +46,7 @@ class Entry:
     Attributes
     ----------
     draw : callable
-        ``draw(ds, output, *, axes=None)`` or, for a complete result, ``draw(ds, *, axes=None)``. The
+        ``draw(ds, output, *, axes=None)`` or, for a result, ``draw(ds, *, axes=None)``. The
         documentation quotes the first line of its docstring.
     subjects : callable
         Findings -> subjects: a function of `uq.render.figures.subjects`.

@@ -233,7 +233,7 @@ def _mark_bounds(
 
 
 def _mark(axes: Axes, described: Described | None, unit: ReadableUnit, colour: str) -> set[str]:
-    """Mark the B-lives of an element with their intervals, and return the names of finite B-lives."""
+    """Mark the B-lives of an element with intervals, and return the names of finite B-lives."""
     if described is None:
         return set()
     statistics = {name: described.find("b_lives", name) for name in B_LIVES}
