@@ -150,7 +150,7 @@ def _leader(answer: Answer, quantity: Quantity) -> Markup:
 
 
 def _earliest(answer: Answer, quantity: Quantity) -> Iterator[Markup]:
-    """Yield the inputs that distinguish the earliest failures, and the rows of these failures."""
+    """Yield the inputs that distinguish the first rows to end, and the command that shows them."""
     if quantity.earliest is None:
         return
     place = (*_place(quantity), "earliest")
@@ -264,7 +264,7 @@ def _levels(answer: Answer) -> Markup:
 
 
 def _first(answer: Answer) -> Markup:
-    """Return the earliest failures of a life, and their causes."""
+    """Return the block on the first rows to end, with the inputs that distinguish them."""
     lines = [] if answer.lead is None else [*map(_line, _earliest(answer, answer.lead))]
     title = Markup("<h3>What ends first</h3>")
     return _block("first", [title, *lines]) if lines else Markup()

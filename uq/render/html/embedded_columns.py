@@ -173,7 +173,7 @@ def output_column(rows: Result, element: Element, analysis: AnalysisTable) -> di
 
 
 def _curve(element: Element) -> str:
-    """Return the kind of curve drawn for an output."""
+    """Return the label of the curve drawn for an output."""
     if element.declared.success:
         return "Share that has not yet succeeded"
     return "Share that outlives each time" if element.is_lifetime else "Share above each value"

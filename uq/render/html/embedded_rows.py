@@ -170,7 +170,7 @@ def why_no_rows(findings: Findings) -> str:
 
 
 def _outputs(findings: Findings) -> list[str]:
-    """Return the outputs shown in a page, if at least one row has a value."""
+    """Return the outputs shown in a page that have at least one value."""
     shown = findings.result.shown_outputs(findings.result.analysis)
     return [output for output in shown if output not in findings.absent]
 

@@ -126,7 +126,7 @@ def inspections_csv(result: Result) -> str:
     return text.getvalue()
 
 
-_FIGURE = Markup("<figure{}>{}</figure>")  # the verdict names the event
+_FIGURE = Markup("<figure{}>{}</figure>")  # the verdict is its caption
 
 
 def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> Markup:

@@ -44,7 +44,7 @@ def cited(function: Callable[..., Any]) -> Citation:
 
 
 def _of_index(method: str, key: str) -> Citation:
-    """Return question, estimator and references of a sensitivity method; the key may be ""."""
+    """Return question, estimator and references of a method; with key "", of no kind of index."""
     estimator = METHODS[method]
     kinds = [f" ({kind.words})" for kind in estimator.kinds if kind.key == key]
     code = f"uq.indices.methods.METHODS['{method}']"

@@ -97,7 +97,7 @@ def software(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def models(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield the description and validation of the model."""
+    """Yield the version, sources and settings of the model."""
     attrs = findings.result.dataset.attrs
     named = ("model", "model_version", "code")
     facts = [(name.replace("_", " "), str(attrs[name])) for name in named if name in attrs]
