@@ -36,7 +36,7 @@ class FigureSubject:
 
 
 Applies = Callable[[Findings, str], bool]
-"""A condition on a result and the name of one of its subjects."""
+"""Condition on a result and the name of one of its subjects."""
 
 
 @dataclass(frozen=True)

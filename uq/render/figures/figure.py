@@ -20,24 +20,24 @@ from uq.files.interrupts import undone
 from uq.files.whole_files import file_behind
 
 WIDTH = 84 / 25.4
-"""One column of a journal [inch]."""
+"""Width of one column of a journal [inch]."""
 PAGE = 174 / 25.4
-"""Both columns [inch]."""
+"""Width of both columns [inch]."""
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
-"""Of regimes and attractors in figures of a result, which use no colour otherwise but `LIMIT`."""
+"""Colours of regimes and attractors; figures of a result use no other colour except `LIMIT`."""
 
 INK = "black"
-"""Of estimates and laws; a page shows it in the colour of its text."""
+"""Colour of estimates and laws; a page replaces it by the colour of its text."""
 ROWS = "#A0A6AD"
-"""Of rows, one by one or counted."""
+"""Colour of rows, individual or counted."""
 LIMIT = "#C2185B"
-"""Of limits: the thresholds of a study, the stops of a machine."""
+"""Colour of limits: thresholds of a study, stops of a machine."""
 SHADES = (INK, "#9A9A9A", "#707070", "#BBBBBB")
-"""Of the elements of an output, together with `LINES`."""
+"""Shades of the elements of an output, combined with `LINES`."""
 BARS = ("#6B7580", "#B4BBC2", "#8E979F", "#D0D5DA")
-"""Of the kinds of indices."""
+"""Shades of the kinds of indices."""
 LINES = ("-", "--", "-.", ":")
 
 _STYLE: Any = {
@@ -54,7 +54,7 @@ _STYLE: Any = {
     "pdf.fonttype": 42,  # keep text searchable and editable
 }
 styled = mpl.rc_context(_STYLE)
-"""The decorator of every function that draws or writes a figure."""
+"""Decorator for every function that draws or writes a figure."""
 
 _MANY = 4000
 
@@ -62,7 +62,7 @@ MARK = 2.5
 """Size of single marks on curves [points]."""
 
 _SIZES = {"cloud": (1000, 4.5, 3.0), "diagram": (2000, 2.0, 1.2), "section": (59, 3.0, 1.0)}
-"""Of the points of a figure [points]: up to how many they are large; large; small."""
+"""Point sizes [points]: maximum count of large points, large size, small size."""
 
 
 def point_size(kind: str, count: int) -> float:

@@ -170,7 +170,7 @@ def output_of(result: Result, name: str) -> str:
 
 
 FEWEST = 3
-"""Along fewer coordinates there is no curve."""
+"""Minimum number of coordinates of a curve."""
 
 _MOST_INPUTS = 4
 

@@ -26,7 +26,7 @@ _LONG = 3.0  # length of a legend line with a marker [font size]
 _SHORT = 30  # characters of labels that fit side by side
 
 _CHARACTERS = 6
-"""Of a number beside each of the ticks that an axis has room for."""
+"""Length of a tick label, which determines how many ticks fit along an axis."""
 
 
 def grid(

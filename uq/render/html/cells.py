@@ -20,7 +20,7 @@ STYLE = Markup("""
 .bar-ends::before { content: ""; position: absolute; left: 0; right: 0;
   top: calc(50% - .5px); border-top: 1px solid currentColor; }
 """)
-"""Bars have the colour of those in figures, which is none of a regime."""
+"""Bars have the same colour as in figures, which differs from the colours of regimes."""
 
 
 def bar(value: float, low: float, high: float, scale: tuple[float, float]) -> Markup:
@@ -58,7 +58,7 @@ def _part(name: str, left: float, right: float) -> Markup:
 
 
 SHARE = "share"
-"""The scale of shares: from 0 to 1."""
+"""Scale of shares, from 0 to 1."""
 
 
 class Cell(NamedTuple):

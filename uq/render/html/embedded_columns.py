@@ -69,7 +69,7 @@ def _ticks(low: float, high: float, per: float, wide: bool) -> list[float]:
 
 
 IMPOSSIBLE = 255
-"""The byte of a row without weight."""
+"""Byte of a row with zero weight."""
 
 _STEPS = 254
 _ALIKE = 1e-9  # differences of logarithms due to rounding
@@ -136,7 +136,7 @@ def indexed(symbol: str) -> Markup:
 
 
 _ENDED, _CENSORED, _NEVER, _UNDEFINED, _FAILED = range(5)
-"""How a row ended, as the scripts number it."""
+"""Status codes of rows, as in the scripts."""
 
 
 def input_column(rows: Result, name: str, unit: ReadableUnit) -> dict[str, Any]:

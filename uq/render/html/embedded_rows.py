@@ -75,10 +75,10 @@ def first_input(inputs: dict[str, Floats], element: Element, answered: Sequence[
 
 
 MOST_ROWS = 20_000
-"""A page holds no more rows: a brush over them takes 0.1 s."""
+"""Maximum number of rows in a page, over which a brush takes 0.1 s."""
 
 MOST_NUMBERS = 480_000
-"""Nor more numbers: they take 5 MB."""
+"""Maximum number of values in a page, which take 5 MB."""
 
 
 _BYTES_OF_NUMBER = 8

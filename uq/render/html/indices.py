@@ -50,7 +50,7 @@ class IndexTable(NamedTuple):
 
 
 Methods = Mapping[str, tuple[str, Sequence[IndexTable]]]
-"""Method -> the rows that it uses, or why it has no indices; and the indices of each target."""
+"""Method -> its rows (or the reason why it has no indices), and the indices of each target."""
 
 
 def output_of(target: str) -> str:

@@ -9,7 +9,7 @@ from uq.sampling.law import Law
 Arguments = Mapping[str, Any]
 
 WIDTHS = (0.5, 0.7, 0.85, 1.15, 1.3)
-"""Factors of the scatter; beyond the ends of a law there is no row, so it can only be narrowed."""
+"""Factors of the scatter; a law with ends can only be narrowed, as no rows lie beyond them."""
 
 SHIFTS = (-1.0, -0.5, 0.5, 1.0)
 """Shifts of the middle, in standard deviations."""
@@ -18,7 +18,7 @@ ENDS = ((0.5, -1.0), (0.7, -1.0), (0.7, 1.0), (0.5, 1.0))
 """Factor and side: the lower or upper part of a law with ends."""
 
 STOPS = len(WIDTHS) + len(SHIFTS)
-"""The most that an input has."""
+"""Maximum number of stops of an input."""
 
 _GUMBEL_SD = pi / sqrt(6)  # standard deviation of the logarithm of a unit exponential
 
@@ -160,4 +160,4 @@ _MOVED: Mapping[str, Callable[[Any, float, float], Arguments]] = {
     "exponential": _exponential,
     **_WITH_ENDS,
 }
-"""Distribution -> its arguments with the scatter times a factor, and the middle shifted."""
+"""Distribution -> function for the arguments with scaled scatter and shifted middle."""

@@ -34,7 +34,7 @@ from uq.text.literals import plain
 from uq.text.numbers import capitalized, printed
 
 _SHOWN_TEXT = 50_000
-"""Characters of the study's text that a page shows: a study may contain data files."""
+"""Maximum length of the study's text in a page [characters]: a study may contain data files."""
 
 
 def laid_out(template: str, result: Result, **content: Any) -> str:

@@ -22,7 +22,7 @@ from uq.text.literals import plain
 from uq.text.units import readable
 
 STEP = 0.01
-"""Numbers are rounded to this [px]: far below what can be seen."""
+"""Rounding step of coordinates [px], far below visible differences."""
 
 _LINES = re.compile(r"(?:\s*(?:[ML]\s+\S+\s+\S+|z))+\s*")
 
@@ -75,7 +75,7 @@ def _beside(x: int, y: int) -> str:
 
 
 HEAVIEST_SVG = 300_000
-"""Longer drawings, without the images in them, are embedded as images [characters]."""
+"""Maximum length of an SVG, not counting its images [characters]; others become images."""
 
 _IMAGE = re.compile(r"data:image[^\"]*")
 _DOTS_PER_INCH = 144  # resolution of an image
@@ -91,7 +91,7 @@ def _in_ink(style: str) -> str:
 
 
 _ATTRIBUTES = {"d": shortened, "style": _in_ink}
-"""Name -> what an attribute becomes."""
+"""Attribute name -> conversion of its value."""
 
 _NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
 

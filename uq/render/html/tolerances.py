@@ -34,10 +34,10 @@ from uq.text.units import beside, readable
 LISTED = "its values are listed and have neither width nor place"
 
 FEWEST = 100
-"""Of several changes at once, a page shows no number where rows are worth fewer."""
+"""Minimum effective sample size for which a page shows numbers for combined changes."""
 
 Statistics = Mapping[tuple[str, ...], Statistic]
-"""Name of an element, and key of a statistic -> this statistic."""
+"""Element name and key of a statistic -> statistic."""
 
 
 def tolerances(

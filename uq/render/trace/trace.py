@@ -70,7 +70,7 @@ def in_words(runs: list[Run], most: int = 4) -> str:
 
 
 RECORDED = ("source", "design", "samples", "replicates", "seed", "study_sha256", "study_identity")
-"""Attributes of a result that say how its rows were drawn."""
+"""Attributes of a result that record how its rows were drawn."""
 
 
 @dataclass(frozen=True)

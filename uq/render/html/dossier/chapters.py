@@ -40,7 +40,7 @@ from uq.sampling.designs import DESIGNS
 from uq.text.keys import key_of
 
 COVERAGE = 0.9
-"""Of the interval between the quantiles that the answer holds, 5 and 95 %."""
+"""Coverage of the interval between the quantiles in the answer, 5 and 95 %."""
 
 
 def propagation(findings: Findings, file: str) -> Iterator[Item]:
@@ -249,7 +249,7 @@ OUTLINE = (
     Heading(studies, "Sensitivity studies", (_TOPICS,)),
     Heading(conclusions, "Conclusions", ("NUREG/CR-7278",)),
 )
-"""In the order of RG 1.245; the wording is ours."""
+"""Headings in the order of RG 1.245, with our own wording."""
 
 
 def chapters(result: Result, file: str) -> dict[Heading, list[Item]]:

@@ -92,4 +92,4 @@ DOCUMENTS = {
     ' Supplement 1 to the "Guide to the expression of uncertainty in measurement": Propagation of'
     " distributions using a Monte Carlo method, JCGM 101:2008.",
 }
-"""Short name -> document. RG 1.245 says what a submittal contains, NUREG/CR-7278 why."""
+"""Short name -> document. RG 1.245 lists the contents of a submittal, NUREG/CR-7278 the reasons."""
