@@ -20,13 +20,13 @@ class FigureSubject:
     Attributes
     ----------
     name : str
-        An output, or a target of indices; "" for the whole result.
+        An output, or a target of indices; "" for the complete result.
     method : str
-        Of the indices.
+        Sensitivity method of the indices.
     keywords : dict
-        Passed on to the function that draws it.
+        Keyword arguments of the drawing function.
     part : str
-        Its number among several figures: ``1 of 2``.
+        Number among several figures: ``1 of 2``.
     """
 
     name: str = ""
@@ -36,7 +36,7 @@ class FigureSubject:
 
 
 Applies = Callable[[Findings, str], bool]
-"""A condition on a result and the name of one of its subjects."""
+"""Condition on a result and the name of one of its subjects."""
 
 
 @dataclass(frozen=True)
@@ -46,22 +46,22 @@ class Entry:
     Attributes
     ----------
     draw : callable
-        ``draw(ds, output, *, axes=None)`` or, for a whole result, ``draw(ds, *, axes=None)``. The
+        ``draw(ds, output, *, axes=None)`` or, for a result, ``draw(ds, *, axes=None)``. The
         documentation quotes the first line of its docstring.
     subjects : callable
         Findings -> subjects: a function of `uq.render.figures.subjects`.
     caption : str
         With ``{what}``, ``{event}`` and ``{method}``: output or target, event, and method in words.
     section : str
-        Of the report; "" if the report does not show it.
+        Section of the report; "" if the report does not show the figure.
     applies : tuple of callable
-        Conditions under which it is drawn.
+        Conditions under which the figure is drawn.
     in_report : tuple of callable
         Further conditions under which the report shows it.
     needs : tuple of str
-        Attributes of `Findings` that are passed on as keywords.
+        Attributes of `Findings` passed as keyword arguments.
     file : tuple of str
-        Parts of the name of its file.
+        Parts of the file name.
     """
 
     draw: Callable[..., Figure]
@@ -85,14 +85,14 @@ class Drawable:
 
     @property
     def file(self) -> str:
-        """The name of its file, without a suffix."""
+        """File name without a suffix."""
         words = {"figure": self.figure, "method": self.subject.method, "name": self.subject.name}
         named = (words[word] for word in self.entry.file)
         return file_name(*filter(None, (*named, self.subject.part)))
 
     @property
     def caption(self) -> str:
-        """Its caption: subject, method and part."""
+        """Caption: subject, method and part."""
         result, name = self.findings.result, self.subject.name
         words = (
             str(result.dataset[name].attrs["long_name"])
@@ -106,7 +106,7 @@ class Drawable:
         return capitalized(caption) + f" ({self.subject.part})" * bool(self.subject.part)
 
     def draw(self) -> Figure:
-        """Return the figure."""
+        """Draw and return the figure."""
         needs = {need: getattr(self.findings, need) for need in self.entry.needs}
         names = filter(None, [self.subject.name])
         return self.entry.draw(
@@ -117,10 +117,10 @@ class Drawable:
 def drawables(
     figures: Mapping[str, Entry], findings: Findings, section: str | None = None
 ) -> Iterator[Drawable]:
-    """Yield every figure of a result, or of one section of its report, in order.
+    """Yield each figure of a result, or of one section of its report, in order.
 
-    Neighbouring entries with the same subjects alternate: all figures of one output come before
-    those of the next.
+    Consecutive entries with the same subjects alternate: all figures of one output precede
+    all figures of the next.
     """
     chosen = [pair for pair in figures.items() if section in (None, pair[1].section)]
     for subjects_of, entries in groupby(chosen, key=lambda pair: pair[1].subjects):

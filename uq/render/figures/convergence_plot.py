@@ -22,7 +22,7 @@ from uq.text.numbers import grouped
 
 _MOST_INPUTS = 6
 _MARKS = "os^vDP"
-_APART = 0.06  # between the intervals of two inputs, over the distance of twice the samples
+_APART = 0.06  # offset between inputs, as a fraction of the distance of a doubled sample size
 
 
 @styled
@@ -38,7 +38,7 @@ def convergence(
     output : str
         An output other than a category, or one element of it.
     running : pandas.DataFrame, optional
-        What `uq.running_estimates` returns, if already computed.
+        Return value of `uq.running_estimates`, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -50,7 +50,7 @@ def convergence(
     Raises
     ------
     InputError
-        When the first rows of the design do not form a design, or neither estimate is known.
+        When the first rows of the design do not form a design, or neither estimate exists.
     """
     result = Result.of(result)
     running = running_estimates(result) if running is None else running
@@ -67,7 +67,7 @@ def convergence(
         words = label(result, element)
         panel.plot(samples, value, color=colour, ls=line, marker=".", label=words)
         if np.isfinite(low).any():
-            only = 0.8 if len(samples) == 1 else 0  # a band over one place has no width
+            only = 0.8 if len(samples) == 1 else 0  # a band over a single point has no width
             panel.fill_between(samples, low, high, color=colour, alpha=0.3, lw=only)
     statistic = "mean" if kind == "mean" else "median"
     bands = _over_samples(panel, result)
@@ -79,11 +79,11 @@ def convergence(
 
 
 def followed(result: Result, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
-    """Return the estimate of an output that `convergence` draws ("" for none), and its lines."""
+    """Return the estimator that `convergence` draws ("" if none), and its running estimates."""
     names = [element.name for element in result.independent.named_elements(output)]
     estimates = running[running["output"].isin(names)]
     estimates = estimates[np.isfinite(estimates["value"].astype(float))]
-    # If a life never ends, the first rows may have a mean although all rows have none.
+    # With lives that never end, the first rows may have a finite mean although all rows have none.
     of_all = (
         estimates[estimates["samples"] == running["samples"].max()]
         .groupby("estimate")["output"]
@@ -148,17 +148,17 @@ def index_convergence(
 
 
 def total_indices(running: pd.DataFrame) -> pd.DataFrame:
-    """Return the lines of `uq.running_estimates` that are total indices."""
+    """Return the total indices among the lines of `uq.running_estimates`."""
     return running[running["kind"] == ST.key].dropna(subset="value")
 
 
 def _numbers(lines: pd.DataFrame) -> list[Floats]:
-    """Return samples, values, low and high ends."""
+    """Return the sample sizes, estimates, and lower and upper interval ends."""
     return [lines[name].to_numpy(float) for name in ("samples", "value", "low", "high")]
 
 
 def _over_samples(axes: Axes, result: Result) -> str:
-    """Draw the axis of samples, and return the title's note on intervals."""
+    """Label the axis of sample size, and return the note on intervals for the title."""
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
     axes.xaxis.set_major_formatter(lambda value, _: grouped(round(value)))

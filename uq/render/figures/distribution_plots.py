@@ -30,8 +30,8 @@ from uq.text.numbers import minus
 from uq.text.units import ReadableUnit
 
 _MOST_PANELS = 4
-_LINE = 0.16  # of the table [inch]
-_COLUMNS = (0.15, 0.49, 1.0)  # right ends
+_LINE = 0.16  # line height of the table [inch]
+_COLUMNS = (0.15, 0.49, 1.0)  # right ends of the columns
 _BOUND = "dotted: tolerance bound"
 _BANDS = (("", 0.35, "pointwise 95 % band"), ("band_", 0.15, "light: simultaneous band"))
 
@@ -42,8 +42,8 @@ def histogram(
 ) -> Figure:
     """Draw a histogram of an output.
 
-    Dotted lines are the tolerance bounds that the study asks for, on the side that it wants; an
-    angle has none, as bounds of its sign are not those of its magnitude.
+    Dotted lines are the tolerance bounds requested by the study, on the requested side. An angle
+    has none, because bounds of the signed angle do not bound its magnitude.
 
     Parameters
     ----------
@@ -94,8 +94,8 @@ def histogram_by_regime(result: AnyResult, output: str, *, axes: Axes | None = N
     result : Result, xarray.Dataset or path
         A result of a model with regimes.
     output : str
-        An output other than a category, or one element of it. Of more than four elements the
-        first and the last are drawn, and only lives that end.
+        An output other than a category, or one element of it. If there are more than four
+        elements, only the first and the last are drawn. Only finite lives are drawn.
     axes : matplotlib.axes.Axes, optional
         Where to draw: panels divide its area. By default a new figure.
 
@@ -141,13 +141,13 @@ def histogram_by_regime(result: AnyResult, output: str, *, axes: Axes | None = N
 def lifetime(
     result: AnyResult, output: str, *, summary: Summary | None = None, axes: Axes | None = None
 ) -> Figure:
-    """Draw the probability that a life has ended against time, with its 95 % bands.
+    """Draw the cumulative failure probability of a lifetime, with its 95 % bands.
 
-    If the end is a success, the axes say what has happened by then, and what has not yet.
+    If the end of a life is a success, the axes name the event instead of a failure.
 
-    The dark band is pointwise; the light one, where there is one, is simultaneous: it covers the
-    whole curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
-    ended. Dotted lines are the tolerance bounds that the study asks for. The right axis shows
+    The dark band is pointwise; the light band, if present, is simultaneous: it covers the entire
+    curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
+    ended. Dotted lines are the tolerance bounds requested by the study. The right axis shows
     the survival probability.
 
     Parameters
@@ -171,7 +171,7 @@ def lifetime(
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = display_unit(chosen[0].declared.unit, ends)
     (panel,) = column(axes, 2.3)
-    bands: dict[str, bool] = {}  # in the order in which they are drawn
+    bands: dict[str, bool] = {}  # in drawing order
     outputs = (summary or summarise(result)).outputs
     for i, element in enumerate(chosen):
         curve = survival(result, element.name)
@@ -218,7 +218,7 @@ def _mark_bounds(
     unit: ReadableUnit,
     colour: str,
 ) -> bool:
-    """Draw the tolerance bounds of an element, and return whether there are any."""
+    """Draw the tolerance bounds of an element, and return whether any exist."""
     if described is None or element.is_angle:
         return False
     wanted = result.analysis.wanted.get(element.output)
@@ -233,7 +233,7 @@ def _mark_bounds(
 
 
 def _mark(axes: Axes, described: Described | None, unit: ReadableUnit, colour: str) -> set[str]:
-    """Mark the B-lives of an element with their intervals, and return the names of finite ones."""
+    """Mark the B-lives of an element with intervals, and return the names of finite B-lives."""
     if described is None:
         return set()
     statistics = {name: described.find("b_lives", name) for name in B_LIVES}
@@ -309,7 +309,7 @@ def quantile_table(
             y += 1
         for texts in quantiles:
             for x, text in zip(_COLUMNS, texts, strict=True):
-                # "beyond the horizon" is longer than the numbers that a column has room for
+                # "beyond the horizon" is wider than a column of numbers
                 wordy = any(letters.isalpha() and letters != "to" for letters in text.split())
                 axes.text(x, y, minus(text), ha="right", size=6.5 if wordy else None)
             y += 1

@@ -21,7 +21,7 @@ _MOST_CURVES = 12
 
 
 def drawn_elements(rows: Result, output: str) -> tuple[list[Element], str]:
-    """Return the elements of an output that a figure has room for, and how many of all they are.
+    """Return the elements of an output that fit in a figure, and how many of them are drawn.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ def drawn_elements(rows: Result, output: str) -> tuple[list[Element], str]:
     Returns
     -------
     list of Element
-        Of many, some at even distances, with both ends.
+        If there are too many, an evenly spaced selection including both ends.
     str
-        "" where these are all.
+        "" if all elements are drawn.
     """
     every = rows.named_elements(output)
     chosen = [every[i] for i in thinned(len(every), _MOST_CURVES)]
@@ -42,7 +42,7 @@ def drawn_elements(rows: Result, output: str) -> tuple[list[Element], str]:
 
 
 def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:
-    """Return the shade and line style of a curve: of two dimensions, the first sets the line."""
+    """Return the shade and line style of a curve; of two dimensions, the first sets the style."""
     if len(element.place) < 2:
         return SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
     firsts = [next(iter(other.place.values())) for other in chosen]
@@ -51,19 +51,19 @@ def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[st
 
 
 def entitle(axes: Axes, chosen: Sequence[Element], *more: str, place: str = "") -> None:
-    """Write a wrapped title: the place of the element drawn, how many rows there are, and more."""
+    """Write a wrapped title: coordinates of the element, number of rows, and further text."""
     texts = filter(None, (place, rows_in_words(chosen), *more))
     text = printed(", ".join(texts))  # no line breaks within a number
     axes.set_title(textwrap.fill(text, 44).replace("\u00a0", " "), loc="left")
 
 
 def display_unit(units: str, values: Floats) -> ReadableUnit:
-    """Return the unit of an axis that shows these values of an output."""
+    """Return the unit of an axis for these values of an output."""
     return unit_of(units, typical(values))
 
 
 def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:
-    """Label the horizontal axis with an input, and return the size of its unit."""
+    """Label the horizontal axis with an input, and return the size of the axis unit."""
     unit = result.input_unit(name)
     axes.set_xlabel(labelled(result.dataset[name], unit.name, width))
     return unit.size
@@ -72,14 +72,14 @@ def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:
 def mark_thresholds(
     axes: Axes, result: Result, element: Element, unit: ReadableUnit, vertical: bool = False
 ) -> None:
-    """Draw the study's thresholds of an output as lines, for an angle on both sides.
+    """Draw the study's thresholds of an output as lines; for an angle, on both sides.
 
-    A threshold so far away that it would squeeze the data is an arrow at the edge.
+    A threshold so far away that it would compress the data is drawn as an arrow at the edge.
 
     Parameters
     ----------
     axes : Axes
-        With the data.
+        Axes with the data already drawn.
     result : Result
     element : Element
     unit : ReadableUnit
@@ -115,27 +115,27 @@ def _is_near(place: float, low: float, high: float, logarithmic: bool) -> bool:
 
 
 def bins(values: Floats) -> tuple[Floats, bool]:
-    """Return the edges of bins for a histogram, and whether its axis is logarithmic."""
+    """Return the bin edges of a histogram, and whether its axis is logarithmic."""
     if len(values) == 0:
         return np.array([0.0, 1.0]), False
     wide = is_wide(values)
     scaled = np.log10(values) if wide else values
-    if np.ptp(scaled) <= 1e-9 * np.abs(scaled).max():  # but for rounding, one value
+    if np.ptp(scaled) <= 1e-9 * np.abs(scaled).max():  # a single value, apart from rounding
         scaled = scaled[:1]
     low, high = scaled.min(), scaled.max()
     if high - low <= _MOST_BINS and not wide and (scaled == np.round(scaled)).all():
-        return np.arange(low - 0.5, high + 1.0), False  # counts: a bin for each
+        return np.arange(low - 0.5, high + 1.0), False  # counts: one bin per value
     edges = np.histogram_bin_edges(scaled, _bin_count(scaled))
     if wide:
         edges = 10**edges
-        edges[0], edges[-1] = values.min(), values.max()  # not rounded: many rows may lie there
+        edges[0], edges[-1] = values.min(), values.max()  # exact: many rows may lie there
     return edges, wide
 
 
 def shares_in_bins(
     element: Element, kept: Mask, edges: Floats, unit: ReadableUnit, part: Mask | None = None
 ) -> Floats:
-    """Return the share of the rows kept that lies in each bin, or that a part of them has there."""
+    """Return the share of the kept rows in each bin, or the share contributed by a subset."""
     worth = np.ones(len(kept)) if element.weights is None else element.weights
     selected = kept if part is None else kept & part
     counts = np.histogram(element.values[selected] / unit.size, edges, weights=worth[selected])[0]
@@ -144,7 +144,7 @@ def shares_in_bins(
 
 
 def _bin_count(values: Floats) -> int:
-    """Return the number of bins: by Scott's rule, or Freedman's for a peak beside a long tail."""
+    """Return the number of bins by Scott's rule, or by Freedman and Diaconis' for long tails."""
     middle = np.subtract(*np.quantile(values, (0.75, 0.25)))
     widths = [width for width in (3.49 * values.std(), 2 * middle) if width > 0]
     if not widths:
@@ -153,17 +153,17 @@ def _bin_count(values: Floats) -> int:
 
 
 def occurring_regimes(rows: Result) -> dict[str, tuple[int, str]]:
-    """Return code and colour of each regime that occurs, by its label, in the order of the model.
+    """Return the code and colour of each occurring regime by label, in the order of the model.
 
     Parameters
     ----------
     rows : Result
-        Rows of a result, of a model with regimes or not.
+        Rows of a result; the model need not have regimes.
 
     Returns
     -------
     dict of str to tuple
-        A regime has the same colour in all figures, whichever others occur.
+        The colour of a regime is the same in all figures, independent of other regimes.
     """
     if "regime" not in rows.dataset:
         return {}

@@ -20,41 +20,41 @@ from uq.files.interrupts import undone
 from uq.files.whole_files import file_behind
 
 WIDTH = 84 / 25.4
-"""One column of a journal [inch]."""
+"""Width of one column of a journal [inch]."""
 PAGE = 174 / 25.4
-"""Both columns [inch]."""
+"""Width of both columns [inch]."""
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
-"""Of regimes and attractors in figures of a result, which use no colour otherwise but `LIMIT`."""
+"""Colours of regimes and attractors; figures of a result use no other colour except `LIMIT`."""
 
 INK = "black"
-"""Of estimates and laws; a page shows it in the colour of its text."""
+"""Colour of estimates and laws; a page replaces it by the colour of its text."""
 ROWS = "#A0A6AD"
-"""Of rows, one by one or counted."""
+"""Colour of rows, individual or counted."""
 LIMIT = "#C2185B"
-"""Of limits: the thresholds of a study, the stops of a machine."""
+"""Colour of limits: thresholds of a study, stops of a machine."""
 SHADES = (INK, "#9A9A9A", "#707070", "#BBBBBB")
-"""Of the elements of an output, together with `LINES`."""
+"""Shades of the elements of an output, combined with `LINES`."""
 BARS = ("#6B7580", "#B4BBC2", "#8E979F", "#D0D5DA")
-"""Of the kinds of indices."""
+"""Shades of the kinds of indices."""
 LINES = ("-", "--", "-.", ":")
 
 _STYLE: Any = {
     "font.size": 8,
     "axes.titlesize": 8,
     "axes.formatter.limits": (-4, 5),
-    "axes.formatter.useoffset": False,  # beside an axis, it is taken for a title
+    "axes.formatter.useoffset": False,  # beside an axis, it would look like a title
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.fontsize": 7,
     "legend.frameon": False,
     "lines.linewidth": 1.2,
     "svg.hashsalt": "vibrolife",
-    "pdf.fonttype": 42,  # text that can be searched and edited
+    "pdf.fonttype": 42,  # keep text searchable and editable
 }
 styled = mpl.rc_context(_STYLE)
-"""The decorator of every function that draws or writes a figure."""
+"""Decorator for every function that draws or writes a figure."""
 
 _MANY = 4000
 
@@ -62,22 +62,22 @@ MARK = 2.5
 """Size of single marks on curves [points]."""
 
 _SIZES = {"cloud": (1000, 4.5, 3.0), "diagram": (2000, 2.0, 1.2), "section": (59, 3.0, 1.0)}
-"""Of the points of a figure [points]: up to how many they are large; large; small."""
+"""Point sizes [points]: maximum count of large points, large size, small size."""
 
 
 def point_size(kind: str, count: int) -> float:
-    """Return the size of the points of a cloud, bifurcation diagram or section."""
+    """Return the point size for a scatter plot, bifurcation diagram or Poincaré section."""
     most, large, small = _SIZES[kind]
     return large if count <= most else small
 
 
 def are_many(points: int) -> bool:
-    """Whether so many points should be drawn as pixels to keep the file small."""
+    """Return whether to rasterise this many points to keep the file small."""
     return points > _MANY
 
 
 def thinned(count: int, most: int = 1000) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Return the indices of the points of a curve to draw: both ends and enough in between."""
+    """Return the indices of the points of a thinned curve, including both ends."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.intp))
 
 
@@ -96,33 +96,33 @@ class Drawing(Figure):
 
 @styled
 def lay_out(figure: Figure) -> None:
-    """Lay out a figure once for all its files."""
+    """Lay out a figure once for all its file formats."""
     figure.set_dpi(DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     if engine := figure.get_layout_engine():
         before = _ticks(figure)
         engine.execute(figure)
-        changed = _ticks(figure) != before  # the new size may need longer numbers
+        changed = _ticks(figure) != before  # the new size may require longer tick labels
         _keep_ticks(figure)
         if changed:
             engine.execute(figure)
-        figure.set_layout_engine("none")  # or else each file would repeat it
+        figure.set_layout_engine("none")  # otherwise each file format would repeat it
 
 
 def _scales(figure: Figure) -> Iterator[Axis]:
-    """Yield both axes of each panel, and of each second scale beside one."""
+    """Yield both axes of each panel and of each secondary scale."""
     for panel in figure.axes:
         for axes in (panel, *panel.child_axes):
             yield from (axes.xaxis, axes.yaxis)
 
 
 def _ticks(figure: Figure) -> list[list[float]]:
-    """Return the places of all ticks."""
+    """Return the positions of all ticks."""
     return [list(axis.get_majorticklocs()) for axis in _scales(figure)]
 
 
 def _keep_ticks(figure: Figure) -> None:
-    """Fix the ticks: others at the next size would need other room."""
+    """Fix the tick positions, because other ticks at the next size would change the layout."""
     for axis in _scales(figure):
         axis.set_major_locator(FixedLocator(list(axis.get_majorticklocs())))
 
@@ -131,7 +131,7 @@ def _keep_ticks(figure: Figure) -> None:
 def _fonts_without_layout() -> Iterator[None]:
     """Embed fonts without their tables of ligatures and kerning.
 
-    matplotlib has placed each letter; to cut these tables down takes most of the time of a PDF.
+    matplotlib places each letter itself; subsetting these tables takes most of the time of a PDF.
     """
     from fontTools.subset import Options
 
@@ -151,7 +151,7 @@ def write(figure: Figure, path: Path) -> list[Path]:
     ----------
     figure : Figure
     path : Path
-        Without a suffix.
+        Path without a suffix.
 
     Returns
     -------
@@ -160,7 +160,7 @@ def write(figure: Figure, path: Path) -> list[Path]:
     Raises
     ------
     InputError
-        When one of them exists and is not a file.
+        When one of these paths exists and is not a file.
     """
     png, svg, pdf = files = [path.with_name(f"{path.name}.{end}") for end in ("png", "svg", "pdf")]
     for file in files:
@@ -178,9 +178,9 @@ def write(figure: Figure, path: Path) -> list[Path]:
 
 @contextmanager
 def replaced(path: Path) -> Iterator[Path]:
-    """Yield a temporary name; the figure written under it takes the place of `path` if complete."""
+    """Yield a temporary path, which replaces `path` once the figure is completely written."""
     file = file_behind(path)
-    part = file.with_name(f".{file.stem}.{os.getpid()}{path.suffix}")  # matplotlib reads the ending
+    part = file.with_name(f".{file.stem}.{os.getpid()}{path.suffix}")  # matplotlib needs the suffix
     with undone(lambda: part.unlink(missing_ok=True)):
         yield part
         os.replace(part, file)

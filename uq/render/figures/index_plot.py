@@ -104,7 +104,7 @@ def index_bars(
         arrows(panel, y, low, high, "x", color=INK)
     panel.set_yticks(middle, labels)
     panel.set_ylim(0, lines.sum())
-    roomy(panel, ticks=3)  # the labels take most of the width
+    roomy(panel, ticks=3)  # the labels occupy most of the width
     has_intervals = any(
         np.isfinite(index.low) for values in kinds.values() for index in values.values()
     )
@@ -117,12 +117,12 @@ def index_bars(
 
 
 def range_of_indices(ends: tuple[float, float]) -> tuple[float, float]:
-    """Return the range of an axis of indices: intervals far outside must not squeeze the bars."""
+    """Return the axis range of indices; distant interval ends do not compress the bars."""
     return max(ends[0], -0.25), min(ends[1], 1.25)
 
 
 def _only(result: Result, output: str, method: str | None) -> TargetIndices:
-    """Return the indices of the only target of a name."""
+    """Return the indices of the target with a name, which must be unique."""
     targets = sensitivities(result, method, output).targets
     if len(targets) > 1:
         raise InputError(f"'{output}' is ambiguous; name one of: {', '.join(targets)}")
@@ -133,7 +133,7 @@ def _only(result: Result, output: str, method: str | None) -> TargetIndices:
 
 
 def subject(result: Result, name: str) -> str:
-    """Describe a target of `uq.assess.sensitivities`."""
+    """Return the description of a target of `uq.assess.sensitivities`."""
     form, inside, at = split_name(name)
     category, _, label = inside.rpartition("=")
     words = output_of(result, name)
@@ -155,7 +155,7 @@ def subject(result: Result, name: str) -> str:
 
 
 def output_of(result: Result, name: str) -> str:
-    """Describe the output that a target of `uq.assess.sensitivities` is of, with its place."""
+    """Return the description of a target's output, with the coordinates of its element."""
     _, inside, _ = split_name(name)
     category = inside.rpartition("=")[0]
     output, _, place = category.partition("[")
@@ -170,15 +170,15 @@ def output_of(result: Result, name: str) -> str:
 
 
 FEWEST = 3
-"""Along fewer coordinates there is no curve."""
+"""Minimum number of coordinates of a curve."""
 
 _MOST_INPUTS = 4
 
 
 def dimension_of(result: Result, output: str) -> str | None:
-    """Return the dimension that indices of an output are drawn along; None if there is none.
+    """Return the dimension along which indices of an output are drawn; None if there is none.
 
-    It is the one with most coordinates of those whose coordinates are numbers, three at least.
+    Of the dimensions with at least three numeric coordinates, the one with the most is chosen.
     """
     dims = [dim for dim in result.outputs[output].dims if result.dataset[dim].dtype.kind in "iuf"]
     longest = max(dims, key=lambda dim: result.dataset.sizes[dim], default=None)
@@ -194,10 +194,10 @@ def index_curves(
     findings: Findings | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw the indices of an output along its depths, times or the like, with 95 % bands.
+    """Draw the indices of an output along a numeric dimension such as depth, with 95 % bands.
 
-    The legend gives the index of all elements together, the four largest first. A panel for each
-    coordinate of the other dimensions.
+    The legend gives the index of all elements together, the four largest first. Each coordinate
+    of the other dimensions has its own panel.
 
     Parameters
     ----------
@@ -206,9 +206,9 @@ def index_curves(
     output : str
         An output with a dimension of three or more numbers.
     method : str, optional
-        By default the first that the study asks for; one that apportions a variance.
+        A variance-based method; by default the first that the study asks for.
     findings : Findings, optional
-        What is already known of the result.
+        Findings of the result, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 

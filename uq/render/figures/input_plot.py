@@ -86,7 +86,7 @@ def inputs(
 
 
 def _stated_shares(law: Law, edges: Floats) -> Floats:
-    """Return the probability of each bin, which includes its lower end, the last also its upper."""
+    """Return the probability of each bin; only the last bin includes its upper end."""
     upper = cdf_within(law, np.append(np.nextafter(edges[1:-1], -np.inf), edges[-1]), EVERYWHERE)
     lower = cdf_within(law, np.nextafter(edges[:1], -np.inf), EVERYWHERE)
     return np.diff(np.append(lower, upper))

@@ -36,7 +36,7 @@ from uq.render.figures.words import (
 from uq.result.elements import Floats
 
 _LAST = 4  # periods of the drive
-_FINEST = 1e-5  # of the largest value, below which a change is one of rounding
+_FINEST = 1e-5  # relative to the largest value: smaller changes are rounding errors
 _ABOVE = 54  # width of a label above a panel of the left column [characters]
 _BESIDE = 32  # width of the label of the vertical axis [characters]
 
@@ -48,15 +48,15 @@ def history(
     *,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw quantities against time, a panel for each.
+    """Draw quantities against time, one panel each.
 
     Parameters
     ----------
     ds : xarray.Dataset
         From `uq.simulate`, with a ``trajectory``, or any Dataset with variables along ``time``.
-        Select a part of it by ``ds.sel(time=slice(3, 4))``.
+        Select an interval by ``ds.sel(time=slice(3, 4))``.
     quantities : sequence of str or of sequences of str, optional
-        In this order, by default all; quantities in an inner sequence share a panel, for instance
+        Drawn in this order; by default all. Quantities in an inner sequence share a panel, e.g.
         ``["disphasing_angle", ["speed_1", "speed_2"]]`` for a run-up.
     axes : matplotlib.axes.Axes, optional
         Where to draw: panels divide its area. By default a new figure.
@@ -99,7 +99,7 @@ def history(
 
 @styled
 def motion(ds: xr.Dataset) -> Figure:
-    """Draw a simulated motion: the whole time history, and its last periods beside it.
+    """Draw a simulated motion: the complete time history, with its last periods beside it.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def motion(ds: xr.Dataset) -> Figure:
 
 
 def _widen(axes: Axes, least: float) -> None:
-    """Show at least a range of the vertical axis, and its numbers in full."""
+    """Set a minimum range of the vertical axis, with tick labels in full."""
     low, high = axes.get_ylim()
     if high - low < least:
         axes.set_ylim((low + high - least) / 2, (low + high + least) / 2)
@@ -162,7 +162,7 @@ def _widen(axes: Axes, least: float) -> None:
 
 
 def _wrapped(angle: Floats) -> Floats:
-    """Return an angle [rad] within half a turn to each side, NaN where it jumps from end to end."""
+    """Return an angle wrapped to [-pi, pi] [rad], NaN where it jumps between the ends."""
     wrapped = (angle + np.pi) % (2 * np.pi) - np.pi
     wrapped[1:][np.abs(np.diff(wrapped)) > np.pi] = np.nan
     return wrapped
@@ -252,7 +252,7 @@ def section(
 
 
 def _places(xs: Floats, ys: Floats) -> int:
-    """Return how many different places points visit, to a hundredth of the figure."""
+    """Return the number of distinct points, to a resolution of a hundredth of the figure."""
     points = np.stack([xs, ys], axis=1)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:

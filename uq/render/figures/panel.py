@@ -20,13 +20,13 @@ from uq.result.elements import Floats
 from uq.text.numbers import minus
 
 _ENTRY = 0.15  # height of a line of the legend [inch]
-_BELOW = 0.5  # from given axes to the legend below them, where their label is one line [inch]
+_BELOW = 0.5  # distance of the legend below given axes with a label of one line [inch]
 _HALF = 19  # characters of a label that fits half of a `Drawing` of one column
-_LONG = 3.0  # length of a line of the legend that has a dot [its font size]
+_LONG = 3.0  # length of a legend line with a marker [font size]
 _SHORT = 30  # characters of labels that fit side by side
 
 _CHARACTERS = 6
-"""Of a number beside each of the ticks that an axis has room for."""
+"""Length of a tick label, which determines how many ticks fit along an axis."""
 
 
 def grid(
@@ -37,17 +37,17 @@ def grid(
     width: float = WIDTH,
     **shared: Any,
 ) -> NDArray[Any]:
-    """Return panels, of a new figure or in place of given axes.
+    """Return a grid of panels, in a new figure or in place of given axes.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes or None
         Several panels divide its area.
     height : float
-        Of a new figure, without the legend that `finish` draws [inch].
+        Height of a new figure, without the legend that `finish` draws [inch].
     rows, columns : int
     width : float
-        Of a new figure [inch].
+        Width of a new figure [inch].
     **shared
         The axes that panels share, as in `matplotlib.figure.Figure.subplots`.
 
@@ -73,7 +73,7 @@ def grid(
 
 
 def column(axes: Axes | None, height: float, rows: int = 1) -> list[Axes]:
-    """Return panels, top to bottom, that share the horizontal axis; see `grid`."""
+    """Return panels with a shared horizontal axis, top to bottom; see `grid`."""
     panels = grid(axes, height, rows, sharex=True)[:, 0]
     if axes is None:
         roomy(panels[0])
@@ -81,7 +81,7 @@ def column(axes: Axes | None, height: float, rows: int = 1) -> list[Axes]:
 
 
 def roomy(axes: Axes, ticks: int = 6) -> None:
-    """Thin out the ticks of a horizontal, linear axis until their numbers do not touch."""
+    """Thin out the ticks of a horizontal linear axis until their labels do not overlap."""
     whole_numbers(axes.xaxis)
     for count in range(ticks, 0, -1):
         axes.locator_params(axis="x", nbins=count)
@@ -91,11 +91,11 @@ def roomy(axes: Axes, ticks: int = 6) -> None:
         gaps = np.diff(shown) / (high - low) * _CHARACTERS * ticks
         if all(gap >= (a + b) / 2 + 1 for gap, (a, b) in zip(gaps, pairwise(widths), strict=True)):
             return
-    axes.set_xticks([shown[0], shown[-1]])  # steps of round numbers leave at least three
+    axes.set_xticks([shown[0], shown[-1]])  # round steps leave at least three ticks
 
 
 def whole_numbers(axis: Axis) -> None:
-    """Write each number in full: a common factor at the end of the axis would cover its label."""
+    """Write tick labels in full, because a common factor would overlap the axis label."""
     axis.set_major_formatter(lambda value, _: _short(value, ".6g"))
 
 
@@ -104,14 +104,14 @@ def _short(value: float, form: str) -> str:
 
 
 class _PlainLog(LogFormatter):
-    """Plain numbers instead of TeX, at the ticks that matplotlib would label."""
+    """Formatter with plain numbers instead of TeX, at the ticks that matplotlib would label."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
         return _short(x, "g" if 1e-3 <= x < 1e5 else ".0e") if super().__call__(x, pos) else ""
 
 
 def logarithmic(axes: Axes, vertical: bool = False) -> None:
-    """Make the horizontal (or the vertical) axis logarithmic, with plain numbers."""
+    """Make the horizontal (or vertical) axis logarithmic, with plain numbers as tick labels."""
     axis, scale = (axes.yaxis, axes.set_yscale) if vertical else (axes.xaxis, axes.set_xscale)
     scale("log")
     axis.set_major_formatter(_PlainLog())
@@ -119,7 +119,7 @@ def logarithmic(axes: Axes, vertical: bool = False) -> None:
 
 
 def is_wide(values: Floats) -> bool:
-    """Whether positive values spread so widely that a logarithmic axis shows them better."""
+    """Return whether positive values span a range wide enough for a logarithmic axis."""
     if len(values) == 0 or values.min() <= 0:
         return False
     low, middle, high = np.quantile(values, (0.005, 0.5, 0.995))
@@ -127,20 +127,20 @@ def is_wide(values: Floats) -> bool:
 
 
 def arrows(axes: Axes, place: Floats, low: Floats, high: Floats, along: str, **style: Any) -> None:
-    """Draw an arrow at the edge of the frame for each end of an interval that leaves it.
+    """Draw an arrow at the edge of the frame for each interval end outside it.
 
     Parameters
     ----------
     axes : Axes
-        With its final limits.
+        Axes with final limits.
     place : ndarray
-        Of the intervals, along the other axis.
+        Positions of the intervals along the other axis.
     low, high : ndarray
-        Their ends; infinite ones leave any frame, NaN is none.
+        Interval ends; infinite ends always leave the frame, NaN means no end.
     along : {"x", "y"}
-        The axis that the intervals are parallel to.
+        Axis parallel to the intervals.
     **style
-        Of the arrows.
+        Style of the arrows.
     """
     first, last = axes.get_xlim() if along == "x" else axes.get_ylim()
     for edge, outside, marker in zip(
@@ -153,21 +153,21 @@ def arrows(axes: Axes, place: Floats, low: Floats, high: Floats, along: str, **s
 
 
 def figure_of(axes: Axes) -> Figure:
-    """Return the figure that axes belong to."""
+    """Return the figure that contains the axes."""
     figure = axes.get_figure(root=True)
     assert figure is not None
     return figure
 
 
 def finish(axes: Axes, entries: int | None = None) -> Figure:
-    """Draw the legend, if there is one: below a `Drawing`, or below the given axes.
+    """Draw the legend, if any, below a `Drawing` or the given axes, and return the figure.
 
     Parameters
     ----------
     axes : Axes
         One panel of the figure.
     entries : int, optional
-        Lines that a `Drawing` grows by; by default those of the legend.
+        Number of lines added to the height of a `Drawing`; by default the legend's.
 
     Returns
     -------
@@ -181,7 +181,7 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
         lines = ceil(len(labels) / across) if entries is None else entries
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
-        # A dot in the middle would hide the dashes of a short line.
+        # A central marker would hide the dashes of a short line.
         dotted = any(
             isinstance(handle, Line2D) and handle.get_marker() == "." for handle in handles
         )
@@ -202,7 +202,7 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
 
 
 def heading(axes: Axes, text: str) -> None:
-    """Write the subject of a figure above a `Drawing`, or else above the panel."""
+    """Write the subject of a figure above a `Drawing`, otherwise above the panel."""
     if isinstance(figure := figure_of(axes), Drawing):
         figure.suptitle(text, x=0.01, ha="left", fontsize=8)
     else:
@@ -215,8 +215,8 @@ def title(axes: Axes, *lines: str) -> None:
 
 
 def above(axes: Axes, text: str) -> None:
-    """Write the label of the vertical axis above it, where a low panel has room for it."""
+    """Write the label of the vertical axis above a low panel, where it fits."""
     axes.set_ylabel(text, rotation=0, ha="left", va="bottom")
     axes.yaxis.set_label_coords(0.0, 1.03)
-    # The layout ignores the height of this label; a title of as many empty lines reserves it.
+    # The layout ignores the height of this label; a title of equally many empty lines reserves it.
     axes.set_title(" " + "\n " * text.count("\n"), loc="left")

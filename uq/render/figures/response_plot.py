@@ -29,8 +29,8 @@ from uq.result.result import AnyResult, Result
 from uq.text import numbers
 from uq.text.numbers import minus, percent
 
-_MOST_CHANGES = 12  # of regime that are marked along a curve
-_WIDE, _NARROW = 60, 36  # characters of a line of the legend, of a figure and of a panel
+_MOST_CHANGES = 12  # maximum number of regime changes marked along a curve
+_WIDE, _NARROW = 60, 36  # characters per line of the legend, of a figure and of a panel
 _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 
 
@@ -38,10 +38,10 @@ _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 def curve(
     result: AnyResult, output: str, *, against: str | None = None, axes: Axes | None = None
 ) -> Figure:
-    """Draw one quantity against another: work-rates against gaps, gaps against the time of wear.
+    """Draw one quantity against another, such as work-rate against gap or gap against time of wear.
 
-    Dotted lines mark changes of ``ds["regime"]``, if present, along the curve, unless there are so
-    many that they would cover it.
+    Dotted lines mark changes of ``ds["regime"]``, if present, along the curve. They are omitted
+    if they are too many and would cover the curve.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def bifurcation(
     by: str | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw the values that a quantity takes at each value of a parameter.
+    """Draw a bifurcation diagram: the values of a quantity at each value of a parameter.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def bifurcation(
 
 
 def _coloured(words: NDArray[Any], declared: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the words that occur, each with its colour; declared words keep theirs."""
+    """Return the occurring labels with their colours; declared labels keep their colours."""
     occurring = {str(word) for word in np.unique(words)}
     order = [*declared, *sorted(occurring - set(declared))]
     return [pair for pair in zip(order, cycle(COLOURS)) if pair[0] in occurring]
@@ -148,7 +148,7 @@ def _coloured(words: NDArray[Any], declared: Sequence[str]) -> list[tuple[str, s
 
 @styled
 def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = None) -> Figure:
-    """Draw which points of a grid lead to which attractor.
+    """Draw the basins of attraction over a grid of two parameters.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     texts = [_basin(ds.isel(basin=i), outputs, width) for i in range(ds.sizes["basin"])]
     (axes,) = column(axes, 2.6)
     units = label_axes(axes, across, up)
-    # If there are more attractors than colours, the rare ones share the last.
+    # If there are more attractors than colours, rare attractors share the last colour.
     shown = np.where(attractor.values < 0, len(COLOURS) + 1, attractor.values)
     shown = np.where(attractor.values >= len(COLOURS), len(COLOURS), shown)
     axes.pcolormesh(
@@ -206,9 +206,9 @@ def _first_dimension(result: Result, output: str) -> str:
 
 
 def _basin(basin: xr.Dataset, outputs: Sequence[str], width: int) -> str:
-    """Describe an attractor: its categories, the chosen outputs and its share of the grid.
+    """Return the description of an attractor: categories, chosen outputs and share of the grid.
 
-    Within a width [characters].
+    The text is wrapped to a width [characters].
     """
     parts = []
     for name, value in basin.data_vars.items():

@@ -34,19 +34,19 @@ from uq.text.numbers import counted
 
 _MOST_INPUTS = 3
 _MOST_POINTS = 3000
-_IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
-_EMPTY = 0.05  # around a mean without a row, over the height of the panel, that interrupts a line
-_RARELY = 3  # times the mean distance of neighbours, which chance leaves empty once in hundreds
-_TORN = 8  # times that distance, which chance hardly ever leaves empty within a median's interval
-_SHORTEST = 3  # slices that make a line
-_GAP = 0.1  # between neighbouring rows, over the width of the panel, that interrupts a line
+_IN_BIN, _MOST_BINS = 20, 24  # minimum rows per bin, maximum bins
+_EMPTY = 0.05  # gap around a mean that breaks a line, relative to the panel's height
+_RARELY = 3  # in mean spacings: a gap that occurs by chance once in hundreds of cases
+_TORN = 8  # in mean spacings: a gap rare by chance within a median's interval
+_SHORTEST = 3  # minimum number of slices of a line
+_GAP = 0.1  # gap between rows that breaks a line, relative to the panel's width
 
 
 @styled
 def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw an output against its most influential inputs, with conditional means.
 
-    Rows in several regimes have a line for each, which stops where an input has no such row.
+    If the rows are in several regimes, each regime has its own line over the range of its rows.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
 
 
 def _parts(rows: Result, count: int) -> dict[str, tuple[Mask, str]]:
-    """Return which rows a line describes, and its colour: of each regime, or of all rows."""
+    """Return the mask of rows and the colour of each line: one per regime, or one for all rows."""
     regimes = occurring_regimes(rows)
     if len(regimes) < 2:
         return {"": (np.ones(count, dtype=bool), INK)}
@@ -132,7 +132,7 @@ def _points(axes: Axes, x: Floats, element: Element) -> None:
 
 
 def _needs_median(element: Element, mask: Mask) -> bool:
-    """Whether the mean of the rows is infinite or uninformative."""
+    """Return whether the mean of the rows is infinite or uninformative."""
     values = element.at_most[mask[element.present]]
     return not np.isfinite(values).all() or lacks_variance(values)
 
@@ -147,7 +147,7 @@ def _conditional(
     medians: bool,
     independent: bool,
 ) -> None:
-    """Draw the mean (or median) within slices of the input, with its 95 % band."""
+    """Draw the conditional mean (or median) within slices of the input, with its 95 % band."""
     selected = mask[element.present]
     values, x = element.at_most[selected], x[element.present][selected]
     count = min(_MOST_BINS, len(x) // _IN_BIN)
@@ -173,7 +173,7 @@ def _conditional(
     seen = np.isfinite(line) & ~empty
     line = np.where(seen & ~_fragments(seen), line, np.nan)
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
-    # A gap between neighbouring rows interrupts the line: it holds no information.
+    # A gap between neighbouring rows breaks the line, because it contains no information.
     inside = np.sort(x)
     edges = np.array(axes.get_xlim())
     along, width = (np.log, np.log(edges)) if axes.get_xscale() == "log" else (np.array, edges)
@@ -195,7 +195,7 @@ def _conditional(
 
 
 def _is_empty(values: Floats, at: float, axes: Axes) -> bool:
-    """Whether the rows of a slice leave an empty space around their mean or median."""
+    """Return whether the rows of a slice leave a gap around their mean or median."""
     if not np.isfinite(at):
         return False
     ended = values[np.isfinite(values)]
@@ -205,7 +205,7 @@ def _is_empty(values: Floats, at: float, axes: Axes) -> bool:
 
 
 def _is_torn(values: Floats, low: float, high: float, axes: Axes) -> bool:
-    """Whether the interval of a median reaches over an empty space to other rows."""
+    """Return whether the interval of a median spans a gap between rows."""
     ended = np.sort(values[np.isfinite(values)])
     inside = ended[(low <= ended) & (ended <= high)]
     by_chance = _TORN * np.ptp(ended) / len(ended) if len(ended) else 0.0
@@ -214,13 +214,13 @@ def _is_torn(values: Floats, low: float, high: float, axes: Axes) -> bool:
 
 
 def _fragments(mask: Mask) -> Mask:
-    """Return which places belong to runs too short for a line."""
+    """Return the mask of slices in runs too short for a line."""
     run = np.cumsum(np.diff(mask, prepend=False))
     return mask & (np.bincount(run)[run] < _SHORTEST)
 
 
 def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
-    """Return the inputs in order of how much the mean rank of the output varies over slices."""
+    """Return the inputs ranked by the variance of the output's mean rank over slices."""
     present = element.present
     # Not scipy.stats.rankdata, whose import takes longer than most figures.
     _, place, counts = np.unique(element.at_most, return_inverse=True, return_counts=True)
@@ -273,7 +273,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
     size = point_size("cloud", len(shown))
     points: Any = {"s": size**2, "lw": 0, "alpha": 0.7, "rasterized": True}
     colour_of = dict(regimes.values())
-    # In the order of the rows: drawn one after the other, the last regime would cover the others.
+    # In the order of the rows: drawn regime by regime, the last would cover the others.
     seen = shown[np.isin(codes[shown], list(colour_of))]
     colours = [colour_of[code] for code in codes[seen]]
     for i, down in enumerate(leading[1:]):
@@ -302,7 +302,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
 
 
 def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
-    """Return the inputs in order of how well they separate one regime from the others."""
+    """Return the inputs ranked by how well they separate one regime from the others."""
     columns = np.column_stack(list(inputs.values()))
     far = np.zeros(len(inputs))
     for code in np.unique(codes[codes >= 0]):

@@ -20,7 +20,7 @@ from uq.text.numbers import counted
 
 @styled
 def shares(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figure:
-    """Draw the share of the rows in each label of a category, with 95 % intervals.
+    """Draw the share of rows with each label of a category, with 95 % intervals.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def shares(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figur
     Raises
     ------
     InputError
-        When it is no category.
+        When the output is not a category.
     """
     result = Result.of(result)
     name = output.partition("[")[0]
@@ -83,7 +83,7 @@ def shares(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figur
 def event_probability(
     result: AnyResult, output: str, *, event: Event | None = None, axes: Axes | None = None
 ) -> Figure:
-    """Draw the probability of an event in parts of the input that decides it, with 95 % intervals.
+    """Draw the probability of an event in bins of its main driver, with 95 % intervals.
 
     The dashed line is the probability over all rows.
 
@@ -94,7 +94,7 @@ def event_probability(
     output : str
         The event, such as ``P(life<86400.0)`` or ``P(regime=periodic)``.
     event : Event, optional
-        What is known of it, if already computed.
+        Estimates for this event, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -105,7 +105,7 @@ def event_probability(
     Raises
     ------
     InputError
-        When the study asks for no such event, or no input is known to decide it.
+        When the study does not request this event, or no main driver is identified.
     """
     result = Result.of(result)
     event = event or next(
@@ -118,7 +118,7 @@ def event_probability(
     value, low, high = np.array([share.numbers for share in curve.shares]).T
     clause = f"rows that {event.clause}"
     (panel,) = column(axes, 2.1)
-    lower, upper = (np.append(end, end[-1]) for end in (low, high))  # one for each edge
+    lower, upper = (np.append(end, end[-1]) for end in (low, high))  # one per edge
     panel.stairs(value, edges, baseline=None, color=colour, lw=1.4, label="in parts of the input")
     words = "95 % intervals, pointwise"
     panel.fill_between(
@@ -127,7 +127,7 @@ def event_probability(
     panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9, label="of all rows")
     panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
     title(panel, *(as_label(line, width=46) for line in (output_of(result, event.name), clause)))
-    over = called(event.over)  # as the sentence beside the figure does
+    over = called(event.over)  # consistent with the sentence beside the figure
     panel.set_xlabel(
         as_label(over, event.over_unit.name, symbol=symbol_of(result.dataset[event.over]))
     )

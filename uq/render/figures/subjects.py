@@ -32,7 +32,7 @@ def outputs(findings: Findings) -> Iterator[FigureSubject]:
 
 
 def inputs(findings: Findings) -> Iterator[FigureSubject]:
-    """Yield the inputs with laws, as many at a time as fit a quarter of a page."""
+    """Yield the inputs with laws, in groups that fit a quarter of a page."""
     names = list(laws_and_values(findings.result))
     count = -(-len(names) // _MOST_INPUTS)
     for i in range(count):
@@ -62,7 +62,7 @@ def targets(findings: Findings) -> Iterator[FigureSubject]:
 
 
 def _indices(findings: Findings) -> Iterator[tuple[str, TargetIndices]]:
-    """Yield each method with the indices of each target."""
+    """Yield each sensitivity method with the indices of each target."""
     for method in methods(findings.result):
         try:
             targets_of = findings.sensitivities(method).targets
@@ -83,14 +83,14 @@ def curves(findings: Findings) -> Iterator[FigureSubject]:
 
 
 def decided_events(findings: Findings) -> Iterator[FigureSubject]:
-    """Yield each event that an input is known to decide."""
+    """Yield each event with an identified main driver."""
     for event in conclude(findings).events:
         if event.curve is not None:
             yield FigureSubject(event.name, keywords={"event": event})
 
 
 def crossed_targets(findings: Findings) -> Iterator[FigureSubject]:
-    """Yield each target whose total indices are known for fewer rows."""
+    """Yield each target with running estimates of its total indices."""
     if any(outputs(findings)):
         names = findings.running["output"]
         with_totals = total_indices(findings.running)["output"]
@@ -98,35 +98,35 @@ def crossed_targets(findings: Findings) -> Iterator[FigureSubject]:
 
 
 def is_lifetime(findings: Findings, name: str) -> bool:
-    """Whether the output is a lifetime."""
+    """Return whether the output is a lifetime."""
     return findings.result.outputs[name].is_lifetime
 
 
 def is_no_lifetime(findings: Findings, name: str) -> bool:
-    """Whether the output is not a lifetime."""
+    """Return whether the output is not a lifetime."""
     return not is_lifetime(findings, name)
 
 
 def in_regimes(findings: Findings, name: str) -> bool:
-    """Whether the rows are in several regimes."""
+    """Return whether the rows are in several regimes."""
     return len(occurring_regimes(findings.rows)) > 1
 
 
 def in_one_regime(findings: Findings, name: str) -> bool:
-    """Whether all rows are in one regime, or the model has none."""
+    """Return whether all rows are in one regime, or the model has no regimes."""
     return not in_regimes(findings, name)
 
 
 def has_plain_rows(findings: Findings, name: str) -> bool:
-    """Whether each row counts once."""
+    """Return whether all rows have equal weight."""
     return not findings.result.has_weights
 
 
 def has_several_inputs(findings: Findings, name: str) -> bool:
-    """Whether at least two inputs vary independently."""
+    """Return whether at least two inputs vary independently."""
     return len(independent_inputs(findings.rows)) > 1
 
 
 def has_running_estimate(findings: Findings, name: str) -> bool:
-    """Whether an estimate of the output is known for fewer rows."""
+    """Return whether the output has running estimates."""
     return bool(followed(findings.result, name, findings.running)[0])

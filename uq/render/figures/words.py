@@ -26,7 +26,7 @@ _SHORT = re.compile(rf"(?:[A-Za-z]|{'|'.join(LETTERS)})(?:\d+|_[A-Za-z0-9]+)?")
 
 
 def literal(text: str) -> str:
-    """Return text in which a dollar sign begins no formula."""
+    """Return text with escaped dollar signs, which begin no formula."""
     return text.replace("$", r"\$")
 
 
@@ -36,7 +36,7 @@ def formula(symbol: str) -> str:
     Parameters
     ----------
     symbol : str
-        Of ASCII letters, digits and signs, each letter with one index at most; anything else is
+        ASCII letters, digits and signs, each letter with at most one index; any other symbol is
         returned as text.
 
     Returns
@@ -51,7 +51,7 @@ def formula(symbol: str) -> str:
 
 
 def is_short(symbol: str) -> bool:
-    """Whether a symbol is one letter with an index at most: ``x1``, ``omega``, ``k_c``."""
+    """Return whether a symbol is one letter with at most one index: ``x1``, ``omega``, ``k_c``."""
     return _SHORT.fullmatch(symbol) is not None
 
 
@@ -67,9 +67,10 @@ def typeset(text: str) -> str:
 
 
 def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> str:
-    """Return text for an axis or a panel: capitalised, with symbols and its unit, wrapped.
+    """Return a label for an axis or a panel: capitalised and wrapped, with symbols and unit.
 
-    Text that is its own symbol is written once, as a formula unless it is a word: ``x1``, ``load``.
+    If text and symbol are equal, it is written once, as a formula unless it is a word: ``x1``,
+    ``load``.
     """
     once = text == symbol
     text = formula(text) if once and is_short(text) else typeset(plain(capitalized(text)))
@@ -93,9 +94,9 @@ def _wrapped(text: str, width: int) -> str:
 
 
 def _lines(text: str, width: int) -> list[str]:
-    """Return lines of about one length, and as few as the width allows.
+    """Return lines of about equal length, as few as the width allows.
 
-    Only a word that is longer than a line, such as a name, is broken, at its hyphens if it has any.
+    Only a word longer than a line, such as a name, is broken, preferably at a hyphen.
     """
     longest = max(map(len, text.split(" ")))
     if longest > width:
@@ -117,7 +118,7 @@ def unbroken(unit: str) -> str:
 
 
 def place_in_words(result: Result, element: Element) -> str:
-    """Return the place of an element within its output: ``left, 250 µm``."""
+    """Return the coordinates of an element within its output: ``left, 250 µm``."""
     words, variable = [], result.dataset[element.output]
     for dim, value in element.place.items():
         attrs: Mapping[str, Any] = variable[dim].attrs if dim in variable.coords else {}
@@ -131,13 +132,13 @@ def place_in_words(result: Result, element: Element) -> str:
 
 
 def label(result: Result, element: Element, never: float = 0.0) -> str:
-    """Return the label of a curve: its place, and the share of rows that never end."""
+    """Return the label of a curve: element coordinates, and the share of infinite lives."""
     share = f"never: {percent(never)}" if never > 0 else ""
     return literal(minus(", ".join(filter(None, (place_in_words(result, element), share)))))
 
 
 def rows_in_words(chosen: Sequence[Element]) -> str:
-    """Return how many rows there are, and how many failed or have no value."""
+    """Return the number of rows, and the numbers of failed rows and of rows without a value."""
     counts = [counted(len(chosen[0].values), "row")]
     for state in ("failed", "undefined", "censored"):
         most = max(int(getattr(element, state).sum()) for element in chosen)
@@ -149,23 +150,23 @@ def rows_in_words(chosen: Sequence[Element]) -> str:
 
 
 def element_in_words(result: Result, element: Element) -> str:
-    """Return the meaning of an element and its place: ``time to wear depth, left, 250 µm``."""
+    """Return the meaning and coordinates of an element: ``time to wear depth, left, 250 µm``."""
     return ", ".join(filter(None, (element.meaning, place_in_words(result, element))))
 
 
 def in_words(variable: xr.DataArray) -> str:
-    """Return the meaning of a variable, with its symbol (never broken) where it has one."""
+    """Return the meaning of a variable, with its symbol (never broken), if any."""
     return with_symbol(meaning_of(variable), variable)
 
 
 def with_symbol(words: str, variable: xr.DataArray) -> str:
-    """Return words for a variable with its symbol, unless they are its symbol."""
+    """Return words for a variable with its symbol, unless the words equal the symbol."""
     symbol = symbol_beside(words, variable)
     return f"{words} ({symbol})" if symbol else words
 
 
 def symbol_beside(words: str, variable: xr.DataArray) -> str:
-    """Return the symbol of a variable as text (never broken), "" if the words are its symbol."""
+    """Return the symbol of a variable as text (never broken), "" if it equals the words."""
     symbol = as_text(symbol_of(variable)).replace(" ", "\u00a0")
     return "" if symbol == as_text(words) else symbol
 
@@ -176,7 +177,7 @@ def meaning_of(variable: xr.DataArray) -> str:
 
 
 def symbol_of(variable: xr.DataArray) -> str:
-    """Return the symbol of a variable, or "" where it is only its meaning in one word."""
+    """Return the symbol of a variable, or "" if it is only the meaning in one word."""
     symbol = str(variable.attrs.get("symbol", ""))
     is_name = "_" in symbol and symbol.replace("_", " ") == meaning_of(variable)
     return "" if is_name else symbol
@@ -215,7 +216,7 @@ def find(ds: xr.Dataset, name: str) -> xr.DataArray:
     Raises
     ------
     InputError
-        When there is none.
+        When there is no such variable.
     """
     if name not in ds.variables:
         names = [str(other) for other in ds.variables]
@@ -229,7 +230,7 @@ def pair(ds: xr.Dataset, x: str, y: str) -> tuple[xr.DataArray, xr.DataArray]:
     Raises
     ------
     InputError
-        When one does not exist, or they are not along one or two dimensions.
+        When a variable does not exist, or the pair does not have one or two dimensions.
     """
     across, up = xr.broadcast(find(ds, x), find(ds, y))
     if across.ndim not in (1, 2):
@@ -277,7 +278,7 @@ def label_axes(
     across, up : xarray.DataArray
         The horizontal and the vertical quantity.
     width : int
-        Of a line beside the vertical axis [characters].
+        Width of a line beside the vertical axis [characters].
     """
     units = axis_unit([across]), axis_unit([up])
     axes.set_xlabel(labelled(across, units[0].name))
@@ -288,7 +289,7 @@ def label_axes(
 def families(
     across: xr.DataArray, up: xr.DataArray, units: Sequence[ReadableUnit]
 ) -> Iterator[tuple[Floats, Floats, dict[str, Any]]]:
-    """Yield the scaled coordinates of each curve along the last dimension, its colour and label."""
+    """Yield the scaled coordinates, colour and label of each curve along the last dimension."""
     if across.ndim == 1:
         across, up = (variable.expand_dims("") for variable in (across, up))
     for i, (x, y) in enumerate(zip(across.values, up.values, strict=True)):
@@ -298,12 +299,12 @@ def families(
 
 
 def in_unit(values: Any, unit: ReadableUnit) -> Any:
-    """Return values in the unit of an axis."""
+    """Return values converted to the unit of an axis."""
     return values * (1 / unit.size)
 
 
 def place_in(variable: xr.DataArray, i: int) -> str:
-    """Return the words for one place along the first dimension: ``left``, ``start 2``."""
+    """Return the coordinate along the first dimension in words: ``left``, ``start 2``."""
     dim = str(variable.dims[0])
     if dim not in variable.coords:
         return f"{dim} {i + 1}"

@@ -62,8 +62,8 @@ _BAR = Markup(
     '<span class="answer-why">{}</span></div>'
 )
 _MOST_BARS = 4
-_SEEN = 0.05  # of the largest bar; a shorter one cannot be seen
-_MOST_ELEMENTS = 2  # besides the first; of more, only the last
+_SEEN = 0.05  # relative to the largest bar; a shorter bar is invisible
+_MOST_ELEMENTS = 2  # besides the first; if there are more, only the last
 _MOST_NAMED = 3  # of inputs whose indices do not distinguish them
 
 
@@ -74,7 +74,7 @@ def fragment(answer: Answer, picture: str = "") -> Markup:
     ----------
     answer : Answer
     picture : str, optional
-        HTML: of the quantity that the study is about.
+        HTML of the figure of the study's main quantity.
     """
     words = _block("words", [_verdict(answer), _ranking(answer), _first(answer)])
     side = _block("side", [Markup(picture), _to_do(answer)])
@@ -82,12 +82,12 @@ def fragment(answer: Answer, picture: str = "") -> Markup:
 
 
 def notebook(answer: Answer) -> str:
-    """Return the answer with its style, as a notebook shows it."""
+    """Return the answer with its style sheet, for display in a notebook."""
     return str(Markup("<style>{}</style>{}").format(STYLE, fragment(answer)))
 
 
 def sayings(answer: Answer, quantities: Sequence[Quantity]) -> Markup:
-    """Return some quantities of an answer in sentences."""
+    """Return the given quantities of an answer in sentences."""
     sentences = []
     for quantity in quantities:
         place, of_error = _place(quantity), keyed(answer.fact, *_place(quantity), "own_error")
@@ -114,7 +114,7 @@ def sayings(answer: Answer, quantities: Sequence[Quantity]) -> Markup:
 
 
 def regimes(answer: Answer) -> Markup:
-    """Return the shares of the regimes, and what decides them."""
+    """Return the shares of the regimes, and their main drivers."""
     events = [_event(answer, "regimes", regime.predicate) for regime in answer.regimes]
     return items(events)
 
@@ -124,12 +124,12 @@ def _place(quantity: Quantity) -> tuple[str, str]:
 
 
 def _basis(quantity: Quantity) -> Markup:
-    """Return the kind of bound that is promised, or why there is none."""
+    """Return the kind of tolerance bound, or the reason why there is none."""
     return shown("" if quantity.promise is None else quantity.promise.basis)
 
 
 def _event(answer: Answer, *place: str) -> Markup:
-    """Return the probability of an event, its main driver, and where it is rare."""
+    """Return the probability of an event, its main driver, and the range where it is rare."""
     share = keyed(answer.fact, *place, "share")
     return joined(share, _cause(answer, *place))
 
@@ -139,7 +139,7 @@ def _cause(answer: Answer, *place: str) -> Markup:
 
 
 def _leader(answer: Answer, quantity: Quantity) -> Markup:
-    """Return the leading contribution with its effect, or why it is unknown."""
+    """Return the largest contribution with its effect, or the reason why it is unknown."""
     place, ranking = (*_place(quantity), "ranking"), quantity.ranking
     sentence_of_leader = keyed(answer.fact, *place)
     if ranking is None or ranking.leader is None or not (ranking.leads and ranking.leader.effect):
@@ -150,7 +150,7 @@ def _leader(answer: Answer, quantity: Quantity) -> Markup:
 
 
 def _earliest(answer: Answer, quantity: Quantity) -> Iterator[Markup]:
-    """Yield what distinguishes the rows that end first, and which these are."""
+    """Yield the inputs that distinguish the first rows to end, and the command that shows them."""
     if quantity.earliest is None:
         return
     place = (*_place(quantity), "earliest")
@@ -165,7 +165,7 @@ def _verdict(answer: Answer) -> Markup:
     lead, facts = answer.lead, answer.fact
     parts = [] if lead is None else list(_of_lead(lead, answer))
     again = keyed(facts, "enough")
-    if lead is not None and not answer.regimes_first:  # the same number stands with the quantity
+    if lead is not None and not answer.regimes_first:  # the quantity shows the same number
         again = keyed(facts, *_place(lead), "another_seed", text=answer.enough.sentence)
     levels = joined(keyed(facts, "levels"), keyed(facts, "levels", "another_regime"))
     unsettled = items(answer.enough.others)
@@ -193,7 +193,7 @@ def _verdict(answer: Answer) -> Markup:
 
 
 def _shares(answer: Answer) -> Markup:
-    """Return the shares of the main regimes in one sentence; "" without any."""
+    """Return the shares of the main regimes in one sentence; "" if there are no regimes."""
     phrases = []
     for regime in answer.main_regimes:
         text = f"{share_text(regime.share)} {regime.predicate}"
@@ -252,7 +252,7 @@ def _ranking(answer: Answer) -> Markup:
 
 
 def _levels(answer: Answer) -> Markup:
-    """Return the levels as bars, of a study that is about the regimes."""
+    """Return the variance components by level as bars, for a study about regimes."""
     if answer.levels is None or not answer.regimes_first:
         return Markup()
     blocks = []
@@ -264,14 +264,14 @@ def _levels(answer: Answer) -> Markup:
 
 
 def _first(answer: Answer) -> Markup:
-    """Return which rows of a life end first, and why."""
+    """Return the block on the first rows to end, with the inputs that distinguish them."""
     lines = [] if answer.lead is None else [*map(_line, _earliest(answer, answer.lead))]
     title = Markup("<h3>What ends first</h3>")
     return _block("first", [title, *lines]) if lines else Markup()
 
 
 def _bar(answer: Answer, lead: Quantity, number: int, level: Contribution) -> Markup:
-    """Return a contribution as a bar with its interval, its effect below."""
+    """Return a contribution as a bar with its interval and, below it, its effect."""
     assert lead.ranking is not None
     largest = lead.ranking.contributions[0].value
     most = largest if level.unit.name else max(1.0, largest)
@@ -295,7 +295,7 @@ def _to_do(answer: Answer) -> Markup:
 
 
 def _advice(answer: Answer, advice: Advice) -> Markup:
-    """Return one thing to do, with its alternatives."""
+    """Return one recommendation with its alternatives."""
     if not advice.key:
         has_number = advice.rows is not None
         return keyed(answer.fact, "advice", advice.rule) if has_number else shown(advice.sentence)

@@ -20,7 +20,7 @@ STYLE = Markup("""
 .bar-ends::before { content: ""; position: absolute; left: 0; right: 0;
   top: calc(50% - .5px); border-top: 1px solid currentColor; }
 """)
-"""Bars have the colour of those in figures, which is none of a regime."""
+"""Bars have the same colour as in figures, which differs from the colours of regimes."""
 
 
 def bar(value: float, low: float, high: float, scale: tuple[float, float]) -> Markup:
@@ -29,14 +29,14 @@ def bar(value: float, low: float, high: float, scale: tuple[float, float]) -> Ma
     Parameters
     ----------
     value, low, high : float
-        NaN for an end that is not known; beyond the scale they stop at its end.
+        NaN for an unknown end; values beyond the scale are clipped to its end.
     scale : tuple of float
-        The numbers at both ends, zero between them or at one of them.
+        Numbers at both ends of the scale, with zero between them or at one end.
 
     Returns
     -------
     Markup
-        "" where there is no number to show.
+        "" if there is no number to show.
     """
     first, last = scale
     if not isfinite(value) or last <= first:
@@ -58,25 +58,25 @@ def _part(name: str, left: float, right: float) -> Markup:
 
 
 SHARE = "share"
-"""The scale of shares: from 0 to 1."""
+"""Scale of shares, from 0 to 1."""
 
 
 class Cell(NamedTuple):
-    """One cell.
+    """Cell of a table.
 
     Attributes
     ----------
     text : str
     more : str
-        In small print below: an interval, a meaning.
+        Small print below: an interval or a meaning.
     key : float or None
-        The number to sort by; a cell without one is text.
+        Number to sort by; None for text.
     traced : str
-        The key of its number for ``uq trace``; "" if it has none.
+        Key of the number for ``uq trace``; "" if it has none.
     scale : str
-        Numbers of a table with the same one have bars on a common scale; "" for no bar.
+        Numbers of a table with equal `scale` have bars on a common scale; "" for no bar.
     ends : tuple of float
-        Of the interval of its number; NaN where there is none.
+        Ends of the interval of the number; NaN if there is none.
     """
 
     text: str
@@ -87,14 +87,14 @@ class Cell(NamedTuple):
     ends: tuple[float, float] = (nan, nan)
 
     def bar(self, scales: Mapping[str, tuple[float, float]]) -> Markup:
-        """Return its number as a bar on one of the scales of its table."""
+        """Return the number as a bar on one of the scales of the table."""
         if self.key is None or not self.scale:
             return Markup()
         return bar(self.key, *self.ends, scales[self.scale])
 
 
 class HtmlTable(NamedTuple):
-    """A table; the first cell of each row names it.
+    """Table; the first cell of each row is the name of the row.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ class HtmlTable(NamedTuple):
 
     @property
     def scales(self) -> dict[str, tuple[float, float]]:
-        """The ends of the scale of each kind of number: zero, and all numbers with intervals."""
+        """Ends of each scale, which includes zero and all numbers with their intervals."""
         scales_of_columns = {SHARE: (0.0, 1.0)}
         for entry in chain.from_iterable(self.rows):
             if entry.scale not in ("", SHARE):
@@ -121,20 +121,20 @@ class HtmlTable(NamedTuple):
         return scales_of_columns
 
     def has_numbers(self, column: int) -> bool:
-        """Whether a column is one of numbers, or of dashes in their place."""
+        """Return whether a column contains numbers, or dashes for missing numbers."""
         return any(row[column].key is not None or row[column].text == "-" for row in self.rows)
 
 
 def cell(statistic: Statistic, per: float = 1.0, scale: str = "") -> Cell:
-    """Return the cell of a statistic, its interval below.
+    """Return the cell of a statistic, with its interval below.
 
     Parameters
     ----------
     statistic : Statistic
     per : float
-        Length of the unit that the cell is in.
+        Size of the unit of the cell.
     scale : str, optional
-        Of its bar.
+        Scale of the bar.
 
     Returns
     -------
@@ -158,7 +158,7 @@ def cell(statistic: Statistic, per: float = 1.0, scale: str = "") -> Cell:
 def estimate_cell(
     text: str, more: str, estimate: Estimate, traced: str = "", scale: str = ""
 ) -> Cell:
-    """Return the cell of an estimate written as text, which it is sorted by where it is finite."""
+    """Return the cell of an estimate as text; a finite estimate is its sort key."""
     key = estimate.value if isfinite(estimate.value) else None
     return Cell(text, more, key, traced, scale, (estimate.low, estimate.high))
 

@@ -15,7 +15,7 @@ from uq.text.numbers import number
 
 
 def convergence_of(findings: Findings, outcomes: list[Outcome]) -> dict[str, Any]:
-    """Return the convergence of a result.
+    """Return the convergence of a result: errors, warnings and figures.
 
     Parameters
     ----------
@@ -26,8 +26,8 @@ def convergence_of(findings: Findings, outcomes: list[Outcome]) -> dict[str, Any
     Returns
     -------
     dict
-        ``table``: the sampling error and the error of the rows themselves, or None; ``warnings``;
-        ``refused``: why there are no running estimates, or ""; ``pictures``.
+        ``table``: the sampling error and the solver error of the rows, or None; ``warnings``;
+        ``refused``: the reason why there are no running estimates, or ""; ``pictures``.
     """
     nothing: dict[str, Any] = {"table": None, "warnings": [], "pictures": []}
     if not outcomes:

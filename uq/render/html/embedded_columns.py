@@ -25,7 +25,7 @@ from uq.text.units import ReadableUnit, readable
 
 _MOST_TICKS = 7
 _MOST_DIGITS = 13
-_SHORT = 8.0  # a logarithmic axis that spans a smaller factor has evenly spaced ticks
+_SHORT = 8.0  # a logarithmic axis spanning a smaller factor has evenly spaced ticks
 
 
 def axis_of(values: Floats, per: float) -> dict[str, Any]:
@@ -34,9 +34,9 @@ def axis_of(values: Floats, per: float) -> dict[str, Any]:
     Parameters
     ----------
     values : ndarray
-        Some may be infinite.
+        Values, possibly infinite.
     per : float
-        The size of the unit shown, in which ticks are round.
+        Size of the displayed unit, in which ticks are round.
     """
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
@@ -47,14 +47,14 @@ def axis_of(values: Floats, per: float) -> dict[str, Any]:
 
 
 def common_digits(axis: dict[str, Any]) -> int:
-    """Return how many digits the values of an axis have in common."""
+    """Return the number of leading digits common to the values of an axis."""
     low, high = axis["low"], axis["high"]
     alike = floor(log10(max(-low, high)) - log10(high - low)) if isfinite(high - low) else 0
     return min(max(alike, 0), _MOST_DIGITS)
 
 
 def _ticks(low: float, high: float, per: float, wide: bool) -> list[float]:
-    """Return round numbers between two ends, in the unit shown; the ends where there are none."""
+    """Return round numbers between two ends in the displayed unit; without any, the ends."""
     first, last = low / per, high / per
     if not (isfinite(last - first) and last - first > np.finfo(float).tiny):
         return [low, high]
@@ -69,10 +69,10 @@ def _ticks(low: float, high: float, per: float, wide: bool) -> list[float]:
 
 
 IMPOSSIBLE = 255
-"""The byte of a row without weight."""
+"""Byte of a row with zero weight."""
 
 _STEPS = 254
-_ALIKE = 1e-9  # differences of logarithms that are rounding
+_ALIKE = 1e-9  # differences of logarithms due to rounding
 _DEEPEST = 16.0
 """Largest fall of a logarithm that is kept: less than a ten millionth of the largest weight is
 negligible."""
@@ -85,7 +85,7 @@ def encoded(values: Any, kind: str) -> str:
     ----------
     values : array-like
     kind : str
-        NumPy's name of their type, such as ``"<f8"``.
+        NumPy dtype, such as ``"<f8"``.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def log_bytes(weights: Floats) -> dict[str, Any]:
     Parameters
     ----------
     weights : ndarray, shape (n,)
-        Not all 0.
+        Weights, at least one of them positive.
 
     Returns
     -------
@@ -117,9 +117,9 @@ def log_bytes(weights: Floats) -> dict[str, Any]:
 
 
 def parts_of(symbol: str) -> list[str]:
-    """Return a symbol cut before and after its indices: ``k_c(0)`` is ``k``, ``c``, ``(0)``.
+    """Split a symbol before and after its index: ``k_c(0)`` becomes ``k``, ``c``, ``(0)``.
 
-    One with several indices in a row is a name, and not cut.
+    A symbol with several consecutive indices is a name, and not split.
     """
     if re.search(r"_[A-Za-z0-9]*_", symbol):
         return [plain(symbol)]
@@ -127,7 +127,7 @@ def parts_of(symbol: str) -> list[str]:
 
 
 def indexed(symbol: str) -> Markup:
-    """Return a symbol with its index below the line: ``k_c`` as ``k<sub>c</sub>``."""
+    """Return a symbol with its index as an HTML subscript: ``k_c`` as ``k<sub>c</sub>``."""
     parts = (
         Markup("<sub>{}</sub>" if i % 2 else "{}").format(part)
         for i, part in enumerate(parts_of(symbol))
@@ -136,11 +136,11 @@ def indexed(symbol: str) -> Markup:
 
 
 _ENDED, _CENSORED, _NEVER, _UNDEFINED, _FAILED = range(5)
-"""How a row ended, as the scripts number it."""
+"""Status codes of rows, as in the scripts."""
 
 
 def input_column(rows: Result, name: str, unit: ReadableUnit) -> dict[str, Any]:
-    """Return the column of an input, with the quarters of its values."""
+    """Return the column of an input, with the quartiles of its values."""
     variable = rows.dataset[name]
     values = variable.values
     symbol = parts_of(symbol_beside(called(name), variable))
@@ -173,14 +173,14 @@ def output_column(rows: Result, element: Element, analysis: AnalysisTable) -> di
 
 
 def _curve(element: Element) -> str:
-    """Return what the curve of an output shows."""
+    """Return the label of the curve drawn for an output."""
     if element.declared.success:
         return "Share that has not yet succeeded"
     return "Share that outlives each time" if element.is_lifetime else "Share above each value"
 
 
 def _states(element: Element) -> NDArray[np.int_]:
-    """Return how each row ended, as the scripts number it."""
+    """Return the status of each row, as coded in the scripts."""
     states = np.where(np.isposinf(element.values), _NEVER, _ENDED)
     states[element.censored] = _CENSORED
     states[np.isnan(element.values)] = _UNDEFINED
@@ -196,7 +196,7 @@ def _column(
     states: NDArray[Any],
     symbol: Sequence[str],
 ) -> dict[str, Any]:
-    """Return a column of numbers: how it is called, written and drawn."""
+    """Return a column of numbers with its name, unit, format and axis."""
     label = plain(printed(readable(words)))
     shown = "" if unit.name == "1" else plain(unbroken(unit.name))
     title = f"{label} ({symbol[0]})" if symbol[0] and len(symbol) == 1 else label
@@ -216,7 +216,7 @@ def _column(
 
 
 def _after(unit: str) -> str:
-    """Return a unit as it follows a number."""
+    """Return a unit as written after a number."""
     if unit in ("", "\N{DEGREE SIGN}"):
         return unit
     space = "\N{NO-BREAK SPACE}"

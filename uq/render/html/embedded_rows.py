@@ -35,19 +35,19 @@ from uq.text.units import readable
 def first_element(
     elements: Sequence[Element], answered: Sequence[Quantity], analysis: AnalysisTable
 ) -> int:
-    """Return the place of the element shown first.
+    """Return the index of the element shown first.
 
     Parameters
     ----------
     elements : sequence of Element
     answered : sequence of Quantity
-        The one that the study is about first.
+        Quantities, the study's main quantity first.
     analysis : AnalysisTable
 
     Returns
     -------
     int
-        Without an answer, of one that the study asks about, a life first.
+        Without an answer, the index of an element in the study's analysis, preferably a life.
     """
     about = answered[0].name if answered else ""
     return max(
@@ -62,9 +62,9 @@ def first_element(
 
 
 def first_input(inputs: dict[str, Floats], element: Element, answered: Sequence[Quantity]) -> str:
-    """Return the input that the answer names as contributing most to an element.
+    """Return the main driver of an element according to the answer.
 
-    Where it names none, that over which the mean rank of the element varies most.
+    If the answer names none, return the input over which the element's mean rank varies most.
     """
     quantities = [quantity for quantity in answered if quantity.name == element.name]
     events = [event for quantity in quantities for event in quantity.events]
@@ -75,10 +75,10 @@ def first_input(inputs: dict[str, Floats], element: Element, answered: Sequence[
 
 
 MOST_ROWS = 20_000
-"""A page holds no more rows: a brush over them takes 0.1 s."""
+"""Maximum number of rows in a page, over which a brush takes 0.1 s."""
 
 MOST_NUMBERS = 480_000
-"""Nor more numbers: they take 5 MB."""
+"""Maximum number of values in a page, which take 5 MB."""
 
 
 _BYTES_OF_NUMBER = 8
@@ -95,20 +95,20 @@ _MISS, _HIT, _NO_PART, _UNKNOWN = range(4)
 def rows_inside(
     findings: Findings, file: str, answered: Sequence[Quantity] = ()
 ) -> dict[str, Any] | None:
-    """Return the rows of a result, for JSON.
+    """Return the rows of a result as plain data for JSON.
 
     Parameters
     ----------
     findings : Findings
     file : str
-        The name of the result.
+        Name of the result file.
     answered : sequence of Quantity, optional
-        What is promised of its elements.
+        Quantities of the answer, with the tolerance bounds of elements.
 
     Returns
     -------
     dict or None
-        None where `why_no_rows` has a reason.
+        None if `why_no_rows` returns a reason.
     """
     if why_no_rows(findings):
         return None
@@ -141,13 +141,13 @@ def rows_inside(
 
 
 def _extent(count: int, total: int) -> str:
-    """Return which rows a page holds."""
+    """Return the description of the rows included in a page."""
     part = f" in this page, a random part of {grouped(total)}" if count < total else ""
     return "The only row." if count == 1 else printed(f"All {grouped(count)} rows{part}.")
 
 
 def _absence(count: int, total: int) -> str:
-    """Return why a page does not hold a row."""
+    """Return the reason why a page excludes a row."""
     counted = "those that count in its statistics"
     part = f"a random part of {grouped(total)}" if count < total else counted
     words = (
@@ -157,7 +157,7 @@ def _absence(count: int, total: int) -> str:
 
 
 def why_no_rows(findings: Findings) -> str:
-    """Return why a page cannot compute with the rows of a result; "" where it can."""
+    """Return the reason why a page cannot compute with the rows of a result; "" if it can."""
     if findings.result.has_weights:
         return "Inspections have weighted the rows, and a page computes with rows that count alike."
     if not len(findings.rows):
@@ -170,25 +170,25 @@ def why_no_rows(findings: Findings) -> str:
 
 
 def _outputs(findings: Findings) -> list[str]:
-    """Return the outputs that a page shows and some row has."""
+    """Return the outputs shown in a page that have at least one value."""
     shown = findings.result.shown_outputs(findings.result.analysis)
     return [output for output in shown if output not in findings.absent]
 
 
 def part_of(rows: Result, columns: int) -> Result:
-    """Return rows, or if a page cannot hold as many, a random part of them: whole samples.
+    """Return the rows, or a random subset of complete samples if there are too many for a page.
 
     Parameters
     ----------
     rows : Result
         The independent rows of a result, or samples of several rows.
     columns : int
-        Numbers of each row.
+        Number of values per row.
 
     Returns
     -------
     Result
-        The same each time.
+        The selection is deterministic.
     """
     count = len(rows)
     most = min(MOST_ROWS, MOST_NUMBERS // columns)
@@ -205,7 +205,7 @@ def part_of(rows: Result, columns: int) -> Result:
 def _thresholds(
     rows: Result, elements: Sequence[Element], analysis: AnalysisTable
 ) -> Iterator[dict[str, Any]]:
-    """Yield the events whose probabilities the study asks for, with the side of each row."""
+    """Yield the events whose probabilities the study requests, with the side of each row."""
     for element in elements:
         for value in analysis.thresholds.get(element.output, ()):
             below = event_sides(element, value)
@@ -220,7 +220,7 @@ def _thresholds(
 
 
 def event_sides(element: Element, threshold: float) -> NDArray[np.uint8]:
-    """Return on which side of a threshold each row lies, as the scripts number it."""
+    """Return the side of a threshold for each row, as coded in the scripts."""
     rows = element.plain
     hits = rows.below(threshold) if element.is_lifetime else rows.above(threshold)
     sides = np.where(hits > 0, _HIT, _MISS).astype(np.uint8)
@@ -230,7 +230,7 @@ def event_sides(element: Element, threshold: float) -> NDArray[np.uint8]:
 
 
 def _regimes(rows: Result) -> Iterator[dict[str, Any]]:
-    """Yield the regimes as events; rows that failed without one take no part."""
+    """Yield the regimes as events; failed rows without a regime are excluded."""
     for category in _categories(rows):
         if category["name"] != REGIME:
             continue
@@ -250,12 +250,12 @@ def _regimes(rows: Result) -> Iterator[dict[str, Any]]:
 
 
 def _integrated(element: Element) -> tuple[str, ...]:
-    """Return the inputs over which the answer and the tables integrate a life."""
+    """Return the inputs over which the answer and the tables integrate a life analytically."""
     return () if element.law is None else element.law.inputs
 
 
 def _asked(rows: Result, element: Element, value: float) -> str:
-    """Return the event whose probability is asked for."""
+    """Return the event whose probability is requested."""
     label = plain(printed(readable(element_in_words(rows, element))))
     at = threshold(value, element.units)
     if element.is_lifetime:
@@ -265,7 +265,7 @@ def _asked(rows: Result, element: Element, value: float) -> str:
 
 
 def _categories(rows: Result) -> Iterator[dict[str, Any]]:
-    """Yield the regimes, and how rows ended: the labels that occur, and the place of each row's."""
+    """Yield regimes and row status: the occurring labels, and the index of each row's label."""
     colours = {name: colour for name, (_, colour) in occurring_regimes(rows).items()}
     for name, label in ((REGIME, "Regime"), ("status", "Status")):
         if name not in rows.dataset:
@@ -290,7 +290,7 @@ def _categories(rows: Result) -> Iterator[dict[str, Any]]:
 
 
 def _note(elements: Sequence[Element]) -> str:
-    """Return what a count is, beside the other numbers of a page."""
+    """Return the note that explains counts beside the other numbers of a page."""
     integrated = dict.fromkeys(name for element in elements for name in _integrated(element))
     words = "Counted, without intervals: those of all rows stand under the outputs."
     if not integrated:

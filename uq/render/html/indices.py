@@ -22,7 +22,7 @@ from uq.text.units import readable
 
 
 class IndexTable(NamedTuple):
-    """The indices of one target, by one method or several.
+    """Sensitivity indices of one target, by one or several methods.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class IndexTable(NamedTuple):
     words : str
     tables : tuple of HtmlTable
     notes : tuple of str
-        Among them why a method has no indices.
+        Notes, including the reason why a method has no indices.
     """
 
     name: str
@@ -40,26 +40,26 @@ class IndexTable(NamedTuple):
 
     @property
     def columns(self) -> int:
-        """Of its widest table."""
+        """Number of columns of the widest table."""
         return max((len(table.header) for table in self.tables), default=0)
 
     @property
     def output(self) -> str:
-        """The output that it is about."""
+        """Output of the target."""
         return output_of(self.name)
 
 
 Methods = Mapping[str, tuple[str, Sequence[IndexTable]]]
-"""Method -> the rows that it uses, or why it has no indices; and the indices of each target."""
+"""Method -> its rows (or the reason why it has no indices), and the indices of each target."""
 
 
 def output_of(target: str) -> str:
-    """Return the output that a target of indices is about, or an event."""
+    """Return the output, or the event, of a target of indices."""
     return re.split(r"[\[=]", split_name(target)[1])[0]
 
 
 def sensitivity_of(findings: Findings) -> Methods:
-    """Return the indices by each method of the study."""
+    """Return the sensitivity indices by each method of the study."""
     return {name: _method(findings, name) for name in methods(findings.result)}
 
 
@@ -94,7 +94,7 @@ def _subject(result: Result, method: str, target_indices: TargetIndices) -> Inde
 
 
 def of_output(methods: Methods, output: str) -> list[IndexTable]:
-    """Return the indices of an output, those of a target by all methods together."""
+    """Return the indices of an output, grouped by target over all methods."""
     tables: dict[str, IndexTable] = {}
     for index_table in chain.from_iterable(subjects for _, subjects in methods.values()):
         if index_table.output != output:

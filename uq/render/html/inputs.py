@@ -46,7 +46,7 @@ def input_tables(result: Result) -> Iterator[HtmlTable]:
 
 
 def fixed_inputs(result: Result) -> HtmlTable | None:
-    """Return the table of fixed inputs, None where there are none."""
+    """Return the table of fixed inputs; None if there are none."""
     fixed = [
         name
         for name in result.dataset.data_vars
@@ -60,7 +60,7 @@ def fixed_inputs(result: Result) -> HtmlTable | None:
 
 def _fixed(result: Result, name: str, by_study: bool) -> tuple[Cell, ...]:
     value = result.dataset[name].item()
-    # The source in the model is that of the nominal value alone.
+    # The source in the model applies only to the nominal value.
     source = (
         (Cell(""), Cell("set in this study, under [fixed]")) if by_study else _source(result, name)
     )
@@ -92,7 +92,7 @@ def _uncertain(result: Result) -> HtmlTable:
 
 
 def _quantiles(name: str, unit: DisplayUnit, quantiles: Floats) -> list[Cell]:
-    """Return quantiles to the digits that tell them apart."""
+    """Return quantiles rounded to the digits that distinguish them."""
     step = np.ptp(quantiles) / unit.per / 30
     places = max(0, -floor(log10(step))) if step > 0 else 0
     texts = (

@@ -18,16 +18,16 @@ def keyed(answer: Fact, *path: str, text: str | None = None) -> Markup:
     Parameters
     ----------
     answer : Fact
-        The tree.
+        Tree of facts.
     *path : str
-        The place of the fact.
+        Path of the fact in the tree.
     text : str, optional
-        Other words for its numbers.
+        Alternative text for the same numbers.
 
     Returns
     -------
     Markup
-        "" without a sentence, or without the fact.
+        "" if the fact or its sentence does not exist.
     """
     try:
         fact = answer.at(*path).content
@@ -40,7 +40,7 @@ def keyed(answer: Fact, *path: str, text: str | None = None) -> Markup:
 
 
 def with_keys(text: str, *keys: str) -> Markup:
-    """Return text that shows keys of its numbers; "" if it is empty."""
+    """Return text as HTML with the keys of its numbers; "" if it is empty."""
     if not text or not keys:
         return shown(text)
     lines = "\n".join(keys)
@@ -50,36 +50,36 @@ def with_keys(text: str, *keys: str) -> Markup:
 
 
 def shown(text: str) -> Markup:
-    """Return text as HTML; HTML is left as it is."""
+    """Return text as escaped HTML; HTML is returned unchanged."""
     return text if isinstance(text, Markup) else Markup.escape(plain(printed(text)))
 
 
 def joined(*sentences: str) -> Markup:
-    """Return sentences in a row, without empty ones."""
+    """Join the non-empty sentences."""
     return Markup(" ").join(filter(None, sentences))
 
 
 def folded(title: str, content: Markup) -> Markup:
-    """Return content below a title that unfolds it; "" without content."""
+    """Return content folded below a title; "" without content."""
     whole = Markup("<details><summary>{}</summary>{}</details>").format(title, content)
     return whole if content else Markup()
 
 
 def items(lines: Iterable[str]) -> Markup:
-    """Return lines as a list; "" without any."""
+    """Return lines as an HTML list; "" if there are none."""
     entries = Markup("").join(Markup("<li>{}</li>").format(shown(line)) for line in lines if line)
     return Markup("<ul>{}</ul>").format(entries) if entries else entries
 
 
 def below(advice: Advice) -> Markup:
-    """Return what belongs to a piece of advice: what other tolerances would change."""
+    """Return the details below a recommendation: the effect of tighter tolerances."""
     if len(advice.tolerances) < 2:
         return Markup()
     return folded("Half the scatter of each input", _tolerances(advice))
 
 
 def _tolerances(advice: Advice) -> Markup:
-    """Return a table: what half the scatter of each input would make of each number."""
+    """Return the table of each number with the scatter of each input halved."""
     tolerances, above = advice.tolerances, {advice.key, *(alike.key for alike in advice.alike)}
     numbers = {tolerance.statistic: tolerance for tolerance in tolerances}
     lines = [
@@ -117,7 +117,7 @@ def _number(text: str) -> Markup:
 
 
 def _cell(tolerance: TighterTolerance, above: Collection[str]) -> Markup:
-    """Return a number with its interval, and with its key where no sentence above has it."""
+    """Return a number with its interval, and its key unless a sentence above has it."""
     text = tolerance.text(tolerance.after)
     number = shown(text) if tolerance.key in above else with_keys(text, tolerance.key)
     return Markup('<td class="number">{}<small>{}</small></td>').format(

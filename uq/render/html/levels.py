@@ -20,9 +20,9 @@ from uq.text.units import typical, unit_of
 
 
 def levels_of(findings: Findings) -> dict[str, Any] | None:
-    """Return the shares of the variance by level: size of the sample, table and notes.
+    """Return the variance components by level: sample size, table and notes.
 
-    None where no sample has several rows, or with weights.
+    None if no sample has several rows, or if the rows are weighted.
     """
     if not findings.result.is_nested or findings.result.has_weights:
         return None
@@ -49,7 +49,7 @@ HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples"
 
 
 def fleet_table(findings: Findings) -> HtmlTable | None:
-    """Return the lives of fleets of a result; None where a sample has a single unit."""
+    """Return the table of fleet lives of a result; None if each sample has a single unit."""
     fleets = findings.fleets
     if not fleets:
         return None
@@ -60,7 +60,7 @@ def fleet_table(findings: Findings) -> HtmlTable | None:
 
 
 def fleet_notes(findings: Findings) -> list[str]:
-    """Return what is integrated in these numbers, what they lack, and what they assume."""
+    """Return notes on the integration, omissions and assumptions of the fleet numbers."""
     sentences = dict.fromkeys(note for fleet in findings.fleets for note in fleet.sentences)
     return list(sentences)
 

@@ -9,7 +9,7 @@ from uq.sampling.law import Law
 Arguments = Mapping[str, Any]
 
 WIDTHS = (0.5, 0.7, 0.85, 1.15, 1.3)
-"""Factors of the scatter; beyond the ends of a law there is no row, so it can only be narrowed."""
+"""Factors of the scatter; a law with ends can only be narrowed, as no rows lie beyond them."""
 
 SHIFTS = (-1.0, -0.5, 0.5, 1.0)
 """Shifts of the middle, in standard deviations."""
@@ -18,13 +18,13 @@ ENDS = ((0.5, -1.0), (0.7, -1.0), (0.7, 1.0), (0.5, 1.0))
 """Factor and side: the lower or upper part of a law with ends."""
 
 STOPS = len(WIDTHS) + len(SHIFTS)
-"""The most that an input has."""
+"""Maximum number of stops of an input."""
 
 _GUMBEL_SD = pi / sqrt(6)  # standard deviation of the logarithm of a unit exponential
 
 
 def widths(law: Law) -> Iterator[tuple[float, Arguments]]:
-    """Yield each factor of the scatter, with the arguments that change."""
+    """Yield each factor of the scatter, with the changed arguments of the law."""
     if _distribution(law) in _SCALE_ONLY:
         return
     for factor in WIDTHS:
@@ -33,7 +33,7 @@ def widths(law: Law) -> Iterator[tuple[float, Arguments]]:
 
 
 def shifts(law: Law) -> Iterator[tuple[float, Arguments]]:
-    """Yield each shift of the middle, with the arguments that change."""
+    """Yield each shift of the middle, with the changed arguments of the law."""
     if has_ends(law):
         for factor, side in ENDS:
             yield side * (1 - factor), _changed(law, factor, side)
@@ -43,12 +43,12 @@ def shifts(law: Law) -> Iterator[tuple[float, Arguments]]:
 
 
 def has_ends(law: Law) -> bool:
-    """Whether a law has no row beyond its ends, so that it can only be narrowed."""
+    """Return whether a law has bounded support, so that reweighting can only narrow it."""
     return _distribution(law) in _WITH_ENDS
 
 
 def can_move(law: Law) -> bool:
-    """Whether the scatter or the middle of a law can be changed."""
+    """Return whether the scatter or the middle of a law can be changed."""
     return _distribution(law) in _MOVED
 
 
@@ -57,7 +57,7 @@ def _distribution(law: Law) -> str:
 
 
 def _changed(law: Law, factor: float, shift: float) -> Arguments:
-    """Return the arguments that differ from the law's, rounded to six digits of their change."""
+    """Return the arguments that differ from the law's, rounded to six digits of the change."""
     moved = _MOVED[_distribution(law)](law, factor, shift)
     changed = {}
     for name, value in moved.items():
@@ -109,7 +109,7 @@ def _exponential(law: Any, factor: float, shift: float) -> Arguments:
 
 
 def _part(lower: float, upper: float, factor: float, side: float) -> tuple[float, float]:
-    """Return the ends of the middle part of a range, or of that at its lower or upper end."""
+    """Return the ends of a subrange at the middle, lower end or upper end of a range."""
     room = (1 - factor) * (upper - lower)
     if side < 0:
         return lower, upper - room
@@ -160,4 +160,4 @@ _MOVED: Mapping[str, Callable[[Any, float, float], Arguments]] = {
     "exponential": _exponential,
     **_WITH_ENDS,
 }
-"""Distribution -> its arguments with the scatter times a factor, and the middle shifted."""
+"""Distribution -> function for the arguments with scaled scatter and shifted middle."""

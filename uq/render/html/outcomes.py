@@ -25,7 +25,7 @@ from uq.text.units import readable, typical, unit_of
 
 
 def status_table(result: Result, summary: Summary) -> HtmlTable:
-    """Return the number and share of rows by status, its meaning, and the first message."""
+    """Return the table of row status: number, share, meaning, and first message."""
     meaning = {status.label: status.meaning for status in Status}
     rows = []
     for label, row_count in summary.status.items():
@@ -54,7 +54,7 @@ def category_table(name: str, shares: Shares) -> HtmlTable:
 
 
 def regime_tables(findings: Findings) -> list[HtmlTable]:
-    """Return the share of each regime, and how intermingled they are where that is known."""
+    """Return the share of each regime and, if available, how intermingled the regimes are."""
     if not findings.summary.regimes:
         return []
     tables = [category_table(REGIME, findings.summary.regimes)]
@@ -79,13 +79,13 @@ _VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance", "joint_bounds")
 
 
 class Outcome:
-    """An element of an output: its statistics, its words, the unit it is shown in.
+    """Element of an output with its statistics, label and displayed unit.
 
     Parameters
     ----------
     name : str
     place : str
-        Within the output: ``left, 250 µm``; "" for a single element.
+        Coordinates within the output: ``left, 250 µm``; "" for a single element.
     declared : Output
     described : Described
     """
@@ -99,31 +99,31 @@ class Outcome:
 
     @property
     def output(self) -> str:
-        """The output that it is an element of."""
+        """Output that contains the element."""
         return self.name.partition("[")[0]
 
     @property
     def label(self) -> Cell:
-        """Its place within the output, with its name below; the name of a single element."""
+        """Coordinates within the output with the name below; for a single element, the name."""
         return Cell(self.place, self.name) if self.place else Cell(self.name)
 
     @property
     def unit_cell(self) -> Cell:
-        """The unit of the other cells; empty for a pure number."""
+        """Unit of the other cells; empty for a dimensionless number."""
         return Cell("" if self.unit.name == "1" else self.unit.name)
 
     def per(self, statistic: Statistic) -> float:
-        """Return the length of the unit in which a statistic is shown."""
+        """Return the size of the unit in which a statistic is shown."""
         return self.unit.size if statistic.unit == self.declared.unit else 1.0
 
     def scale(self, statistic: Statistic) -> str:
-        """Return the scale of its bars: values of the output share one."""
+        """Return the scale of the bars; all values of the output share one scale."""
         is_value = statistic.key[0] in _VALUES and statistic.unit == self.declared.unit
         return self.declared.unit if is_value else ""
 
 
 def outcomes(result: Result, summary: Summary) -> list[Outcome]:
-    """Return the elements that a summary describes, in its order."""
+    """Return the elements described by a summary, in the same order."""
     names = dict.fromkeys(name.partition("[")[0] for name in summary.outputs)
     of_outputs = []
     for element in result.independent.elements(list(names)):
@@ -134,7 +134,7 @@ def outcomes(result: Result, summary: Summary) -> list[Outcome]:
 
 
 def result_tables(of_outputs: list[Outcome]) -> Iterator[HtmlTable]:
-    """Yield the tables of statistics that are not empty."""
+    """Yield the non-empty tables of statistics."""
     shown = [
         (outcome, statistic)
         for part in STATISTICS
@@ -154,7 +154,7 @@ def result_tables(of_outputs: list[Outcome]) -> Iterator[HtmlTable]:
 def _table(
     listing: Listing, of_outputs: list[Outcome], shown: list[tuple[Outcome, Statistic]]
 ) -> HtmlTable:
-    """Lay out statistics in columns, in the order of `STATISTICS`."""
+    """Return a table with statistics as columns, in the order of `STATISTICS`."""
     columns = tuple(dict.fromkeys(_heading(statistic) for _, statistic in shown))
     rows: list[tuple[Cell, ...]] = []
     for outcome in of_outputs:
@@ -208,7 +208,7 @@ _WORDS = {
 
 
 def words_used(of_outputs: list[Outcome]) -> list[str]:
-    """Return what the counts mean that occur."""
+    """Return the meanings of the counts that occur."""
     counted = {
         statistic.key[-1]
         for outcome in of_outputs
@@ -225,16 +225,16 @@ def groups(
     drawn: Sequence[Picture],
     methods: Methods,
 ) -> Iterator[dict[str, Any]]:
-    """Yield what is known of each output that the study asks for, the one it is about first.
+    """Yield the results of each output in the study's analysis, its main quantity first.
 
     Parameters
     ----------
     findings : Findings
     answer : Answer
     outcomes : sequence of Outcome
-        The elements of all outputs.
+        Elements of all outputs.
     drawn : sequence of Picture
-        Those that the head of the report does not show.
+        Figures that the head of the report does not show.
     methods : Methods
 
     Yields

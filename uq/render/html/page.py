@@ -34,7 +34,7 @@ from uq.text.literals import plain
 from uq.text.numbers import capitalized, printed
 
 _SHOWN_TEXT = 50_000
-"""Characters of the study's text that a page shows: a study may contain data files."""
+"""Maximum length of the study's text in a page [characters]: a study may contain data files."""
 
 
 def laid_out(template: str, result: Result, **content: Any) -> str:
@@ -43,11 +43,11 @@ def laid_out(template: str, result: Result, **content: Any) -> str:
     Parameters
     ----------
     template : str
-        The name of one that extends ``base.html``.
+        Name of a template that extends ``base.html``.
     result : Result
         A result.
     **content
-        What this template shows besides title, style and study file.
+        Content of this template besides title, style and study file.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def templates() -> Any:
 
 
 def _breakable(text: str) -> Markup:
-    """Return text as printed, with places where long names may be broken."""
+    """Return text as printed, with line-break opportunities in long names."""
     return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(printed(text))))))
 
 
@@ -101,7 +101,7 @@ def _printed(text: str) -> str:
 
 
 def _inside(content: Any) -> Markup:
-    """Return plain data as JSON that can stand inside a page."""
+    """Return plain data as JSON, escaped for embedding in HTML."""
     return Markup(json.dumps(content, allow_nan=False).replace("<", "\\u003c"))
 
 
@@ -114,7 +114,7 @@ def references(result: Result) -> tuple[str, ...] | None:
 
 
 def inspections_csv(result: Result) -> str:
-    """Return the inspections inside a result as `uq update` reads them; "" where there are none."""
+    """Return the inspections in a result as CSV for `uq update`; "" if there are none."""
     inspections = json.loads(result.dataset.attrs.get("inspections", "[]"))
     if not inspections:
         return ""
@@ -126,11 +126,11 @@ def inspections_csv(result: Result) -> str:
     return text.getvalue()
 
 
-_FIGURE = Markup("<figure{}>{}</figure>")  # the verdict says of what
+_FIGURE = Markup("<figure{}>{}</figure>")  # the verdict is its caption
 
 
 def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> Markup:
-    """Return the answer as HTML; takes the figure that it shows out of those drawn.
+    """Return the answer as HTML, and remove the figure that it shows from those drawn.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> 
     drawn : list of Picture
         The figures of the results.
     by_regime : list of Picture
-        The figures of the rows by their regimes, which the answer may be about.
+        Figures of the rows by regime, used if the answer is about regimes.
     """
     lead = answer.lead
     figures = [
@@ -186,7 +186,7 @@ def write_report(
 
 
 def page(result: Result, name: str) -> str:
-    """Return the report of a result as HTML, the same text each time.
+    """Return the report of a result as HTML; the text is reproducible.
 
     Parameters
     ----------

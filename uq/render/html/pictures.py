@@ -22,7 +22,7 @@ from uq.text.literals import plain
 from uq.text.units import readable
 
 STEP = 0.01
-"""Numbers are rounded to this [px]: far below what can be seen."""
+"""Rounding step of coordinates [px], far below visible differences."""
 
 _LINES = re.compile(r"(?:\s*(?:[ML]\s+\S+\s+\S+|z))+\s*")
 
@@ -75,29 +75,29 @@ def _beside(x: int, y: int) -> str:
 
 
 HEAVIEST_SVG = 300_000
-"""Longer drawings, without the images in them, are embedded as images [characters]."""
+"""Maximum length of an SVG, not counting its images [characters]; others become images."""
 
 _IMAGE = re.compile(r"data:image[^\"]*")
-_DOTS_PER_INCH = 144  # of an image
+_DOTS_PER_INCH = 144  # resolution of an image
 
 _INK = {"#000000": "currentColor", "fill: #ffffff": "fill: none"}
 
 
 def _in_ink(style: str) -> str:
-    """Return a style with the colour of the page's text for black, and no white ground."""
+    """Return a style with black replaced by the page's text colour, and no white background."""
     for colour, shown in _INK.items():
         style = style.replace(colour, shown)
     return style
 
 
 _ATTRIBUTES = {"d": shortened, "style": _in_ink}
-"""Name -> what an attribute becomes."""
+"""Attribute name -> conversion of its value."""
 
 _NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
 
 
 class Picture(NamedTuple):
-    """A figure as HTML, what it shows, whether it spans both columns, and its subject."""
+    """Figure as HTML, with its caption, column span and subject."""
 
     html: Markup
     caption: str
@@ -107,7 +107,7 @@ class Picture(NamedTuple):
 
     @property
     def output(self) -> str:
-        """The output that it is about."""
+        """Output shown in the figure."""
         return output_of(self.subject)
 
 
@@ -129,7 +129,7 @@ def pictures(findings: Findings, section: str, without: Container[str] = ()) -> 
 
 
 def about(drawn: Sequence[Picture], name: str) -> list[Picture]:
-    """Return the figures of an output, and of its targets and events."""
+    """Return the figures of an output, including its targets and events."""
     return [figure for figure in drawn if name in (figure.subject, figure.output)]
 
 
@@ -141,7 +141,7 @@ def picture(figure: Figure, caption: str, name: str = "") -> Picture:
     ----------
     figure : Figure
     caption : str
-        Its text alternative.
+        Text alternative of the figure.
     name : str, optional
         Unique within a page; by default the caption.
 

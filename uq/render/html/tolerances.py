@@ -34,10 +34,10 @@ from uq.text.units import beside, readable
 LISTED = "its values are listed and have neither width nor place"
 
 FEWEST = 100
-"""Of several changes at once, a page shows no number where rows are worth fewer."""
+"""Minimum effective sample size for which a page shows numbers for combined changes."""
 
 Statistics = Mapping[tuple[str, ...], Statistic]
-"""Name of an element, and key of a statistic -> this statistic."""
+"""Element name and key of a statistic -> statistic."""
 
 
 def tolerances(
@@ -48,16 +48,16 @@ def tolerances(
     Parameters
     ----------
     rows : Result
-        The rows inside the page.
+        Rows embedded in the page.
     elements : sequence of Element
         Of these rows.
     promises : dict of str to ToleranceBound
-        Bounds that are promised of elements.
+        Tolerance bounds of elements.
 
     Returns
     -------
     dict or None
-        None where no input has a slider.
+        None if no input has a slider.
     """
     if rows.design.imported:
         return None
@@ -68,7 +68,7 @@ def tolerances(
     studied = _statistics(population(rows, outputs), context, promises)
 
     def estimates(law_name: str, arguments: Arguments) -> dict[str, Any] | None:
-        """Return weights and estimates with other arguments of a law; None if they make none."""
+        """Return weights and estimates for other arguments of a law; None if these are invalid."""
         changes = {f"uncertain.{law_name}.{key}": value for key, value in arguments.items()}
         options = (f"--set {shlex.quote(f'{key}={toml(value)}')}" for key, value in changes.items())
         stop = {"options": " ".join(options)}
@@ -116,7 +116,7 @@ def tolerances(
 
 
 def _why_without(name: str, inputs: Inputs) -> str:
-    """Return why an input has no slider, or ""."""
+    """Return the reason why an input has no slider, or ""."""
     law = inputs.laws[name]
     if not can_move(law):
         return LISTED
@@ -134,7 +134,7 @@ def _why_without(name: str, inputs: Inputs) -> str:
 def _analysis(
     rows: Result, elements: Sequence[Element], promises: Mapping[str, ToleranceBound]
 ) -> AnalysisTable:
-    """Return the thresholds of the study, and the quantiles that promised bounds rest on."""
+    """Return the thresholds of the study, and the quantiles behind the tolerance bounds."""
     analysis = rows.analysis
     shown = {
         element.output: None
@@ -150,7 +150,7 @@ def _analysis(
 def _statistics(
     elements: Iterable[Element], context: Context, promises: Mapping[str, ToleranceBound]
 ) -> Statistics:
-    """Return the probabilities of events, and the quantiles that promised bounds rest on."""
+    """Return the probabilities of events, and the quantiles behind the tolerance bounds."""
     return {
         (element.name, *statistic.key): statistic
         for element in elements
@@ -163,7 +163,7 @@ def _statistics(
 def _slider(
     rows: Result, name: str, law: Law, estimates: Callable[[Arguments], dict[str, Any] | None]
 ) -> dict[str, Any] | None:
-    """Return the stops of an input; None where none is possible."""
+    """Return the slider of an input with its stops; None if no stop is possible."""
 
     def stops(moved: Iterator[tuple[float, Arguments]], studied: float) -> list[dict[str, Any]]:
         moves = [
@@ -192,12 +192,12 @@ def _slider(
 
 
 def _place_of_study(stops: Sequence[Mapping[str, Any]]) -> int:
-    """Return the place of the law of the study among some stops."""
+    """Return the index of the stop with the law of the study."""
     return next(place for place, stop in enumerate(stops) if "options" not in stop)
 
 
 def _quality(effective_rows: float, pareto_k: float, rows: Result) -> str:
-    """Return how many equal rows the weights are worth."""
+    """Return the effective sample size of the weights in words."""
     tail = f" (Pareto k = {pareto_k:.2g})" if isfinite(pareto_k) else ""
     count, name = _independent(rows)
     digits = f"{effective_rows:.3g}"
@@ -206,7 +206,7 @@ def _quality(effective_rows: float, pareto_k: float, rows: Result) -> str:
 
 
 def _independent(rows: Result) -> tuple[int, str]:
-    """Return how many independent samples of several rows there are, else how many rows."""
+    """Return the number of independent samples, or of rows if each sample is one row."""
     part = rows.replicates
     if isinstance(part, Clusters) and part.are_samples:
         return len(np.unique(part)), "samples"
@@ -214,7 +214,7 @@ def _independent(rows: Result) -> tuple[int, str]:
 
 
 def _words(rows: Result, name: str, law: Law, arguments: Arguments) -> str:
-    """Return the arguments of a law that sliders move: ``mean 250 µm, sd 25 µm``."""
+    """Return the adjustable arguments of a law in words: ``mean 250 µm, sd 25 µm``."""
     unit = unit_of_input(rows, name)
 
     def words(key: str, value: Any) -> str:
@@ -239,7 +239,7 @@ def _events(
     context: Context,
     refused: Mapping[str, str] = MappingProxyType({}),
 ) -> dict[str, dict[str, Any]]:
-    """Return the probabilities of the events that the study asks about."""
+    """Return the probabilities of the events requested by the study."""
     return {
         event_key(element, value): _cell(
             statistics.get((element.name, "thresholds", repr(value), side)),
@@ -252,12 +252,12 @@ def _events(
 
 
 def event_key(element: Element, threshold: float) -> str:
-    """Return the name of an event that the study asks about."""
+    """Return the name of an event requested by the study."""
     return f"{element.name}/{threshold:.15g}"
 
 
 def _cell(statistic: Statistic | None, refused: str) -> dict[str, Any]:
-    """Return a probability with its interval, as numbers and in words."""
+    """Return a probability with its interval, as numbers and as text."""
     if statistic is None:
         return {"value": None, "more": plain(printed(refused))}
     estimate = statistic.best.estimate
@@ -276,7 +276,7 @@ def _cell(statistic: Statistic | None, refused: str) -> dict[str, Any]:
 
 
 def _promised_now(promise: ToleranceBound) -> list[str]:
-    """Return the bounds that are promised, and that a quantile of weighted rows could replace."""
+    """Return the tolerance bounds that a quantile of weighted rows could replace."""
     bounds = map(promise.of_quantile, promise.probabilities)
     return [plain(printed(bound.sentence)) for bound in bounds if bound is not None]
 
@@ -284,7 +284,7 @@ def _promised_now(promise: ToleranceBound) -> list[str]:
 def _promised_then(
     then: Statistics, studied: Statistics, name: str, promise: ToleranceBound
 ) -> list[str]:
-    """Return what bounds of an element would then be, beside the same estimates as studied."""
+    """Return the changed bounds of an element, beside the same estimates for the study's law."""
     return [
         _then(
             bound,
@@ -306,7 +306,7 @@ def _then(bound: ToleranceBound, then: float, studied: float) -> str:
 
 
 def _end(statistic: Statistic | None, bound: ToleranceBound) -> float:
-    """Return the end of the interval of a quantile, with failed rows beyond it."""
+    """Return the interval end of a quantile, counting failed rows beyond it."""
     if statistic is None:
         return nan
     estimates: list[Estimate] = [statistic.best.estimate]

@@ -10,14 +10,14 @@ from uq.indices.methods import METHODS, indices_of
 
 
 class Citation(NamedTuple):
-    """An estimator.
+    """Citation of an estimator.
 
     Attributes
     ----------
     does : str
-        Summary in one line.
+        One-line summary.
     code : str
-        The function that computes it: ``uq.stats.order_statistics.quantile``.
+        Function that computes it: ``uq.stats.order_statistics.quantile``.
     sources : tuple of str
         References of its docstring.
     """
@@ -28,7 +28,7 @@ class Citation(NamedTuple):
 
 
 def cited(function: Callable[..., Any]) -> Citation:
-    """Return summary and references of an estimator: its docstring, or that of its method."""
+    """Return the summary and references in the docstring of an estimator or of its method."""
     if isinstance(function, partial) and function.func is indices_of:
         return _of_index(*function.args)
     while isinstance(function, partial):
@@ -44,7 +44,7 @@ def cited(function: Callable[..., Any]) -> Citation:
 
 
 def _of_index(method: str, key: str) -> Citation:
-    """Return question, estimator and references of a method; "" is the key of no kind of index."""
+    """Return question, estimator and references of a method; with key "", of no kind of index."""
     estimator = METHODS[method]
     kinds = [f" ({kind.words})" for kind in estimator.kinds if kind.key == key]
     code = f"uq.indices.methods.METHODS['{method}']"

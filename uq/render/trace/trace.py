@@ -20,7 +20,7 @@ from uq.text.numbers import counted
 
 
 class Run(NamedTuple):
-    """Rows at equal distances, in one block of the design."""
+    """Equally spaced rows in one block of the design."""
 
     block: str
     first: int
@@ -30,7 +30,7 @@ class Run(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The numbers of its rows."""
+        """Row numbers in words."""
         if self.rows == 1:
             return f"{self.first}"
         by = f" by {self.step}" if self.step > 1 else ""
@@ -48,7 +48,7 @@ def runs_of(rows: Result) -> list[Run]:
 
 
 def _runs(numbers: NDArray[np.int64]) -> list[tuple[int, int, int, int]]:
-    """Cut ascending numbers where their usual distance changes."""
+    """Split ascending numbers where their spacing changes."""
     if len(numbers) == 0:
         return []
     steps = np.diff(numbers)
@@ -70,7 +70,7 @@ def in_words(runs: list[Run], most: int = 4) -> str:
 
 
 RECORDED = ("source", "design", "samples", "replicates", "seed", "study_sha256", "study_identity")
-"""Attributes of a result that say how its rows were drawn."""
+"""Attributes of a result that record how its rows were drawn."""
 
 
 @dataclass(frozen=True)
@@ -114,17 +114,17 @@ class Trace:
 
     @property
     def equal(self) -> bool:
-        """Whether both are equal to the bit."""
+        """Whether the number and its recomputation are equal to the bit."""
         return json.dumps(self.numbers) == json.dumps(self.again)  # full precision
 
     @property
     def which(self) -> str:
-        """The rows in words."""
+        """Rows behind the number in words."""
         return in_words(self.runs)
 
 
 def trace(result: AnyResult, key: str, model: str | None = None) -> pd.Series:
-    """Say where a number of a result comes from, and compute it again.
+    """Return the provenance of a number of a result, and recompute it.
 
     Parameters
     ----------
@@ -150,8 +150,8 @@ def trace(result: AnyResult, key: str, model: str | None = None) -> pd.Series:
     Examples
     --------
     >>> ds = uq.run("studies/ishigami.toml")
-    >>> found = uq.trace(ds, "outputs/y/quantiles/0.5")
-    >>> bool(found["value"] == uq.summary(ds).loc["y", "q0.5"]), found["equal"]
+    >>> record = uq.trace(ds, "outputs/y/quantiles/0.5")
+    >>> bool(record["value"] == uq.summary(ds).loc["y", "q0.5"]), record["equal"]
     (True, True)
     """
     entries = trace_json(traced(Result.of(result), key, model))
@@ -159,7 +159,7 @@ def trace(result: AnyResult, key: str, model: str | None = None) -> pd.Series:
 
 
 def traced(result: Result, key: str, model: str | None = None) -> Trace:
-    """Return where a number of a result comes from; see `trace`."""
+    """Return the provenance of a number of a result; see `trace`."""
     parts = taken_apart(key.strip(), {name: verb.options for name, verb in VERBS.items()})
     verb, path = VERBS[parts.verb], parts.path
     options = parts.options | ({"model": model} if model else {})

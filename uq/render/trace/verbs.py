@@ -44,12 +44,12 @@ COUNTED = ("failed", "undefined", "censored", "never")
 
 
 def _named(path: Path, *within: str) -> str:
-    """Return the output, element or target that a path names in some parts of JSON, or ""."""
+    """Return the output, element or target named by a path in the JSON of a verb, or ""."""
     return path[1] if path[1:] and path[0] in within else ""
 
 
 def _summary(result: Result, options: Options, path: Path) -> Fact:
-    """Return a summary; of the output alone that a path names, with fits if it asks for them."""
+    """Return a summary, limited to the output of a path, with fits if the path needs them."""
     if path[:1] == (BOUNDARY,):
         return boundary_facts(result, boundary(result))
     names = result.output_names
@@ -62,13 +62,13 @@ def _summary(result: Result, options: Options, path: Path) -> Fact:
 
 
 def _inside(path: Path) -> str:
-    """Return the output or element that a path names, alone or inside of a target, or ""."""
+    """Return the output or element named by a path, directly or within a target, or ""."""
     name = _named(path, "outputs", "quantities")
     return split_name(name)[1] if name else ""
 
 
 def _answer(result: Result, options: Options, path: Path) -> Fact:
-    """Return the answer; of the quantity or the part alone that a path names."""
+    """Return the answer, limited to the quantity or part named by a path."""
     findings = Findings(result)
     part, *names = path or ("",)
     alone = not result.is_nested  # variance components change the sentences on regimes
@@ -118,7 +118,7 @@ def _update(result: Result, options: Options, path: Path) -> Fact:
 
 
 def _convergence(result: Result, options: Options, path: Path) -> Fact:
-    """Return running estimates; only the errors if the path names one: every design has them."""
+    """Return running estimates, or only the errors if the path names one."""
     name = _inside(path) or None
     if path[2:] and path[2] != "estimates":
         errors = enough(result, name).to_dict("index")
@@ -129,7 +129,7 @@ def _convergence(result: Result, options: Options, path: Path) -> Fact:
 
 
 def _convergence_again(rows: Result, options: Options, path: Path) -> Any:
-    """Return what stands at a path: of running estimates the last one of the rows."""
+    """Return the value at a path; for running estimates, the last one."""
     if path[2] != "estimates":
         return _convergence(rows, options, path).at(*path).json
     lines = estimates_from(rows, [path[1]])
@@ -147,9 +147,9 @@ def _what_if(result: Result, options: Options, path: Path) -> Fact:
 
 
 def states_of_element(rows: Result, facts: Fact, path: Path) -> dict[str, int]:
-    """Return how many rows of the element of a path have a value, failed, are censored and so on.
+    """Return the number of rows by state (value, failed, censored, ...) for the element of a path.
 
-    Of the element that all facts are about, if the path names none; empty without any.
+    If the path names no element, use the element common to all facts; empty if there is none.
     """
     name = _inside(path) or facts.members.get("output", "")
     if not name or output_in(name) != name:  # of a category
@@ -161,7 +161,7 @@ def states_of_element(rows: Result, facts: Fact, path: Path) -> dict[str, int]:
 
 
 def _states_of_groups(rows: Result, facts: Fact, path: Path) -> dict[str, int]:
-    """Return how many groups of rows have a value in each row, and how many are dropped."""
+    """Return the number of row groups with all values, and the number of dropped groups."""
     if path[0] != "outputs":
         return {}
     (target,) = chosen(rows, facts.members["method"], [path[1]])
@@ -176,12 +176,12 @@ def _no_states(rows: Result, facts: Fact, path: Path) -> dict[str, int]:
 
 
 class Verb(NamedTuple):
-    """A verb whose numbers have keys.
+    """Verb whose numbers have keys.
 
     Attributes
     ----------
     facts : callable
-        Result, options, path -> its facts, as far as the path needs them.
+        Result, options, path -> facts of the verb, as far as the path needs them.
     options : tuple of str
         Options of the command that change its numbers; names that end with a dot are prefixes.
     states : callable

@@ -15,14 +15,14 @@ from uq.text.numbers import quantity
 
 
 def context(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield what the assessment is for."""
+    """Yield the purpose of the assessment."""
     study = findings.result.study.study
     yield Item("Purpose", text=[study.description] if study.description else [])
     yield Item("Decision that it supports, and the rules that apply to it")
 
 
 def information(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield what a reader needs to repeat the assessment."""
+    """Yield the information required to repeat the assessment."""
     result = findings.result
     name, model = result.study.study.name, result.model_option
     yield Item(
@@ -54,7 +54,7 @@ def information(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def quantities(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield what is asked for."""
+    """Yield the quantities of interest."""
     result = findings.result
     asked, declared = result.analysis, result.outputs
     lines = [
@@ -83,7 +83,7 @@ def quantities(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def software(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield what is known of the software."""
+    """Yield the versions and verification of the software."""
     attrs = findings.result.dataset.attrs
     here = [(name, str(attrs[name])) for name in provenance() if name in attrs]
     yield Item("Versions and processor", facts=here)
@@ -97,7 +97,7 @@ def software(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def models(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield what is known of the model."""
+    """Yield the version, sources and settings of the model."""
     attrs = findings.result.dataset.attrs
     named = ("model", "model_version", "code")
     facts = [(name.replace("_", " "), str(attrs[name])) for name in named if name in attrs]

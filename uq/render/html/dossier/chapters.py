@@ -40,11 +40,11 @@ from uq.sampling.designs import DESIGNS
 from uq.text.keys import key_of
 
 COVERAGE = 0.9
-"""Of the interval between the quantiles that the answer holds, 5 and 95 %."""
+"""Coverage of the interval between the quantiles in the answer, 5 and 95 %."""
 
 
 def propagation(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield how the laws were propagated, and how rows ended."""
+    """Yield the method of uncertainty propagation, and the status of the rows."""
     result, summary = findings.result, findings.summary
     attrs = result.dataset.attrs
     rows = [("rows", str(summary.samples)), ("independent rows", str(summary.rows_used))]
@@ -72,7 +72,7 @@ def propagation(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def convergence(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield whether the rows are enough."""
+    """Yield the evidence that the sample size is sufficient."""
     estimates = convergence_of(findings, outcomes(findings.result, findings.summary))
     yield Item("Verdict", text=verdict(findings))
     refused = list(filter(None, [estimates["refused"]]))
@@ -87,7 +87,7 @@ def convergence(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield the indices of each output, by all methods."""
+    """Yield the sensitivity indices of each output by each method."""
     methods = sensitivity_of(findings)
     yield Item(
         "Methods",
@@ -103,7 +103,7 @@ def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield what is known of the quantities of interest."""
+    """Yield the estimated uncertainty of the quantities of interest."""
     described = outcomes(findings.result, findings.summary)
     of_jcgm = _coverage_intervals(findings)
     yield Item(
@@ -184,7 +184,7 @@ def _interval(findings: Findings, quantity: Quantity, likely: Range) -> tuple[Ce
 
 
 def _estimators(findings: Findings) -> list[HtmlTable]:
-    """Return what computes the statistics of the tables, and whom each of these cites."""
+    """Return the estimators of the tabulated statistics, with their references."""
     functions = dict.fromkeys(
         function
         for described in findings.summary.outputs.values()
@@ -205,7 +205,7 @@ def _estimators(findings: Findings) -> list[HtmlTable]:
 
 
 def studies(findings: Findings, file: str) -> Iterator[Item]:
-    """Yield what other assumptions would change."""
+    """Yield the effects of alternative assumptions."""
     advised = [advice.text for advice in conclude(findings).advice if advice.tightened is not None]
     yield Item("Less scatter of what matters most", text=advised)
     note = (
@@ -249,18 +249,18 @@ OUTLINE = (
     Heading(studies, "Sensitivity studies", (_TOPICS,)),
     Heading(conclusions, "Conclusions", ("NUREG/CR-7278",)),
 )
-"""In the order of RG 1.245; the wording is ours."""
+"""Headings in the order of RG 1.245, with our own wording."""
 
 
 def chapters(result: Result, file: str) -> dict[Heading, list[Item]]:
-    """Return what is expected under each heading, provided or not, in the order of the outline.
+    """Return the items expected under each heading, provided or not, in the order of the outline.
 
     Parameters
     ----------
     result : Result
         A result.
     file : str
-        The name of its file.
+        Name of the result file.
     """
     findings = Findings(result)
     return {heading: list(heading.source(findings, file)) for heading in OUTLINE}

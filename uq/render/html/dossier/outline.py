@@ -22,7 +22,7 @@ from uq.render.html.pictures import Picture
 
 @dataclass(frozen=True)
 class Item:
-    """One thing that is expected under a heading.
+    """Item expected under a heading.
 
     Attributes
     ----------
@@ -34,12 +34,12 @@ class Item:
     tables : sequence of HtmlTable
     pictures : sequence of Picture
     subjects : sequence of IndexTable
-        Indices.
+        Sensitivity indices.
     code : str
-        Text as it stands in a file.
+        Verbatim text of a file.
     html : Markup
     notes : sequence of str
-        Small print: without the above, it provides nothing.
+        Small print; an item with only notes is not provided.
     """
 
     title: str
@@ -54,21 +54,21 @@ class Item:
 
     @property
     def is_provided(self) -> bool:
-        """Whether there is anything but small print."""
+        """Whether the item has any content besides small print."""
         held = (self.text, self.facts, self.tables, self.pictures, self.subjects, self.code)
         return any((*held, self.html))
 
 
 class Heading(NamedTuple):
-    """A heading.
+    """Heading of a dossier.
 
     Attributes
     ----------
     source : callable
-        Findings, name of the file -> the items under it; its name is the heading's in a page.
+        Findings, file name -> items under the heading; its name is the heading's id in a page.
     title : str
     after : tuple of str
-        What it follows; the first word or two name one of `DOCUMENTS`.
+        References that it follows; the first one or two words name one of `DOCUMENTS`.
     """
 
     source: Callable[[Findings, str], Iterator[Item]]
@@ -77,7 +77,7 @@ class Heading(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Its place in a page."""
+        """Identifier of the heading in a page."""
         return self.source.__name__
 
 
@@ -92,4 +92,4 @@ DOCUMENTS = {
     ' Supplement 1 to the "Guide to the expression of uncertainty in measurement": Propagation of'
     " distributions using a Monte Carlo method, JCGM 101:2008.",
 }
-"""Short name -> document. RG 1.245 says what a submittal contains, NUREG/CR-7278 why."""
+"""Short name -> document. RG 1.245 lists the contents of a submittal, NUREG/CR-7278 the reasons."""
