@@ -1,7 +1,7 @@
-"""Rows computed in separate processes, which they may crash or never leave.
+"""Rows computed in separate processes, in case they crash or hang.
 
-Such rows are computed again in parts, down to single rows: the guilty ones get a status and a
-message, the others the same values as anywhere.
+Such rows are computed again in parts, down to single rows. Rows that crash or time out get a status
+and a message; the others get the same values as in any other process.
 """
 
 import signal
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 TRIES = 3
-"""How often rows kill their process before they are blamed: it may be killed from outside."""
+"""Crashes before rows are marked as crashed: a process may also be killed externally."""
 
 _PARTS = 8  # of rows that crashed: more are too small for kernels, fewer crash more often
 _STARTS = 3
@@ -45,7 +45,7 @@ Evaluate = Callable[[Floats, NDArray[np.uint64], int], Chunk]
 
 
 def spec_of(workload: "Workload") -> child.ModelSpec:
-    """Return what a process needs to compute rows of a workload."""
+    """Return the specification of the model that a process needs for a workload."""
     settings = tuple(asdict(workload.settings).items())
     code = code_of(workload.model_reference)
     return child.ModelSpec(

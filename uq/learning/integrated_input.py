@@ -93,11 +93,11 @@ class IntegratedScale:
 def scale_of(
     rows: Result, observables: Sequence[Observable]
 ) -> tuple[IntegratedScale | None, tuple[str, ...]]:
-    """Return the input to integrate, and sentences on those that do too much to be integrated.
+    """Return the input to integrate, and sentences on scaling inputs that cannot be integrated.
 
-    A shared one first, of these the one that scatters lives most. One that scales all lives and
-    depths that were inspected, and that no other output depends on: that would keep the values
-    computed with the input as drawn.
+    The input must scale all inspected lives and depths, and no other output may depend on it: such
+    an output would keep the values computed with the sampled input. Shared inputs are preferred,
+    then inputs that cause more scatter of the lives.
     """
     inputs, levels = inputs_of(rows), rows.levels
     exponents = {
@@ -129,7 +129,7 @@ def scale_of(
 
 
 def shared_inputs(rows: Result, scale: IntegratedScale | None) -> list[str]:
-    """Return the inputs that units share, without the integrated one and those equal to it."""
+    """Return the shared inputs, except the integrated input and inputs equal to it."""
     shared = [name for name, level in rows.levels.items() if level == SHARED]
     if scale is None or scale.is_own:
         return shared
