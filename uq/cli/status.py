@@ -108,8 +108,8 @@ def plain(recomputed: RowAgain) -> dict[str, Any]:
     -------
     dict
         ``row``, ``equal``, ``place`` in the design, and the row as `uq simulate` prints it. Where
-        it is not equal, ``reason``, and if it was computed again ``differing`` and ``again``. What
-        differs here from what made the result is in ``versions``, ``[there, here]``.
+        it is not equal, ``reason``, and if it was computed again ``differing`` and ``again``.
+        ``versions`` has the versions that differ from those of the result, ``[there, here]``.
     """
     again = recomputed.again
     entry: dict[str, Any] = {

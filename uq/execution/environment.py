@@ -1,4 +1,4 @@
-"""Other processes, which import and compile as this one."""
+"""Start of child processes with the same imports and compilation as this process."""
 
 import os
 import subprocess
@@ -24,7 +24,7 @@ def command(module: str, *arguments: str) -> list[str]:
 
 
 def inherited() -> dict[str, str]:
-    """Return the environment of a process that must give the same bits as this one."""
+    """Return the environment of a process with bitwise equal results."""
     environment = dict(os.environ) | {"PYTHONPATH": os.pathsep.join(sys.path)}
     return SINGLE_THREADED | environment | _numba_settings()
 

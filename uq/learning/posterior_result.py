@@ -85,9 +85,9 @@ def as_result(
         ``unit_scale`` (inspected, sample): posterior draw of the integrated input of each inspected
         unit in each row; ``unit_scale_scores`` (inspected, sample, score): its posterior law.
         ``learnt_law_pulls``, ``learnt_law_follows`` (sample, term), ``unit_law_pulls``
-        (inspected, sample, term), ``learnt_law_scores`` (score,): posterior law of an integrated input that all units share, and influence of the
-        rows (`uq.learning.scale_posterior`). Attributes: ``inspections``, and ``ledger``, a digest
-        of each.
+        (inspected, sample, term), ``learnt_law_scores`` (score,): posterior law of an integrated
+        input that all units share, and influence of the rows (`uq.learning.scale_posterior`).
+        Attributes: ``inspections``, and ``ledger``, a digest of each.
     """
     if taken := [name for name in _WEIGHTS if name in rows.dataset.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")

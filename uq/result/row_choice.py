@@ -216,5 +216,5 @@ class _Nothing:
 
 
 def _refused(*arguments: Any) -> NoReturn:
-    """Placeholder of the batch function: rows of a result are only shown, never computed."""
+    """Replace the batch function: rows of a result are only shown, never computed."""
     raise NotImplementedError("this model only describes a result")
