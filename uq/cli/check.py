@@ -25,7 +25,7 @@ from uq.text.units import powers, typical, unit_of
 
 
 def check(path: str, model: str | None) -> None:
-    """Print what a study would run, if it is valid."""
+    """Print the planned run of a study, if the study is valid."""
     study = load_study(path, model, say)
     design = study.design
     heading(f"{path}: valid", study.description)

@@ -71,7 +71,7 @@ Line = tuple[str, ...]
 
 
 def _lines(output: ComparedOutput, size: float, variable: str) -> Iterator[Line]:
-    """Yield the statistics of an output, in a unit of some size, and ratios of them."""
+    """Yield the statistics of an output, in a unit of size `size`, and their ratios."""
     for statistic in output.statistics:
         first = statistic.first
         per = size if first.unit == output.units else 1.0

@@ -50,7 +50,7 @@ def _show_status(run: RunStatus) -> None:
 
 
 def verify(path: Path, model: str | None) -> int:
-    """Check a result and print what was found; return the exit code."""
+    """Verify a result and print the findings; return the exit code."""
     holds = checksum_holds(path)
     words = {True: "right", False: "WRONG: the file has changed since it was written", None: "none"}
     console.print(f"checksum  {words[holds]}")

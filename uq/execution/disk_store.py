@@ -197,7 +197,7 @@ class DiskStore(MemoryStore):
         super().add(start, rows, chunk)
 
     def keep_up(self) -> None:
-        """Write what has arrived, unless that would exceed the share of time for writing.
+        """Write the arrived rows, unless that would exceed the share of time for writing.
 
         Raises
         ------
@@ -254,7 +254,7 @@ class DiskStore(MemoryStore):
                 place(file, ds, record.blocks)
 
     def close(self) -> None:
-        """Write what has arrived, if possible, and remove useless files."""
+        """Write the arrived rows, if possible, and remove useless files."""
         if not self.shapes_all_wrong:
             with suppress(RunError):
                 self._write()

@@ -51,7 +51,7 @@ def _numba_settings() -> dict[str, str]:
 def started(
     module: str, prints: int = subprocess.DEVNULL
 ) -> tuple[subprocess.Popen[bytes], Connection]:
-    """Start a process with a connection to this one, the number of which is its argument.
+    """Start a process connected to this one; its argument is the number of the connection.
 
     It is in a session of its own: Ctrl-C reaches this process, which ends the other.
 

@@ -230,7 +230,7 @@ class Dispatcher:
 SHORT_SECONDS = 4.0
 """Shorter work is not worth starting workers."""
 
-_SHARE_HERE = 1 / 64  # of the rows, to learn what they cost before workers take chunks of them
+_SHARE_HERE = 1 / 64  # of the rows, to measure their cost before workers start
 
 
 def in_one_process(workers: int | None, seconds: float) -> bool:

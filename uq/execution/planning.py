@@ -234,7 +234,7 @@ def _spread(count: int) -> list[int]:
 
 
 def _row_cost(seconds: Sequence[float], rows: Sequence[int], chunks: int) -> tuple[float, float]:
-    """Return the time of a row [s] from some of the chunks, and its relative 95 % half-width."""
+    """Estimate the time of a row [s] from sampled chunks, with its relative 95 % half-width."""
     mean, m = sum(seconds) / sum(rows), len(seconds)
     if m == chunks:
         return mean, 0.0

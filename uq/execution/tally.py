@@ -203,7 +203,7 @@ class MemoryStore:
         return len(data), int(np.count_nonzero(failed_rows(status, required))), by_status(status)
 
     def count(self, rows: int, failed: int, status: dict[str, int], failures: Failures) -> None:
-        """Count some rows."""
+        """Add rows to the counts."""
         self.done += rows
         self.failed += failed
         self.status.update(status)

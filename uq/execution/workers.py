@@ -32,7 +32,7 @@ _Sent = tuple[int, Rows, int]
 """Number of the first row, the rows, and how often they have been sent."""
 
 Returned = tuple[int, Rows, Chunk, float]
-"""Number of the first row, the rows, their outputs, and what they cost [s], 0 if unknown."""
+"""Number of the first row, the rows, their outputs, and their cost [s], 0 if unknown."""
 
 
 class Workers:

@@ -113,7 +113,7 @@ class LimitState:
         return self.physical(u)[:, [names.index(name) for name in self.study.uncertain]]
 
     def __call__(self, u: Floats) -> Floats:
-        """Compute the rows of some points.
+        """Evaluate the limit-state function at points of standard normal space.
 
         Parameters
         ----------

@@ -25,7 +25,7 @@ def from_study(rows: Result) -> Mask:
 
 
 def repetitions_of(rows: Result) -> NDArray[np.int32]:
-    """Return the sampler repetition that each row of a result starts, shape (n,).
+    """Return the sampler repetition to which each initial row is assigned, shape (n,).
 
     A repetition starts from one replicate of a replicated design, else from an eighth of the
     samples.

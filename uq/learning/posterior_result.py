@@ -186,7 +186,7 @@ _OF_POSTERIOR = (
 
 
 def as_unit(result: AnyResult, label: str) -> xr.Dataset:
-    """Return the rows of a posterior as those of one inspected unit.
+    """Return the rows of a posterior, weighted to represent one inspected unit.
 
     Parameters
     ----------

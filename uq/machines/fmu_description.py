@@ -137,7 +137,7 @@ def _version_of(path: Path) -> str:
 
 
 def variables_of(description: Any, causality: str = "") -> dict[str, Any]:
-    """Return the real variables of an FMU, all or those of a causality, by name."""
+    """Return the real variables of an FMU by name, optionally of one causality only."""
     return {
         variable.name: variable
         for variable in description.modelVariables

@@ -102,7 +102,7 @@ def _loop_of(
 
 
 def _called(function: Any, count: int, place: int | None) -> Any:
-    """Return a compiled function of a row and its seed, which is an argument in some place."""
+    """Return a compiled function of a row and its seed, passed as argument number `place`."""
     import numba
     from numba.np.unsafe import ndarray
 

@@ -67,7 +67,7 @@ def bound_files(folder: Path) -> int:
 
 
 def ended_within(process: subprocess.Popen[bytes], seconds: float) -> bool:
-    """Wait for a process, for some seconds at most; return whether it has ended."""
+    """Wait for a process up to a time limit; return whether it has ended."""
     seconds = max(seconds, 0.0)
     if sys.platform == "linux":
         with suppress(OSError):

@@ -182,7 +182,7 @@ class Result:
 
     @property
     def notes_on_places(self) -> list[str]:
-        """A sentence on each output of which only some elements are shown."""
+        """Sentences on outputs with only selected elements shown."""
         return [
             f"{name}: shown at evenly spread places, as it has {size} elements; name it in"
             " [analysis] outputs for all of them"
