@@ -21,8 +21,8 @@ shape (n,)."""
 def edges_of_rows(grid: QuadratureGrid, possible: Mask, allowed: Allowed | None) -> Floats:
     """Return the cell edges of the grid in each row, as prior probabilities.
 
-    A unit observed running has a left-truncated posterior: the first allowed cell of a row starts at the
-    truncation point, which differs between rows.
+    A unit observed running has a left-truncated posterior: the first allowed cell of a row starts
+    at the truncation point, which differs between rows.
 
     Parameters
     ----------
