@@ -1,4 +1,4 @@
-"""The command ``uq``: its start, how it reports mistakes, its end.
+"""The command ``uq``: start, error reports and end.
 
 Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
 
@@ -147,8 +147,7 @@ def _run(arguments: list[str]) -> int:
 def _stop(process: int, number: int, frame: FrameType | None) -> NoReturn:
     """End at once, leaving nothing behind; no exception that could be caught on the way.
 
-    A process that a model has forked from this one ends without a word: what is pending here is not
-    its own to undo.
+    A process forked by a model exits silently: it must not undo pending work of this process.
     """
     signal.signal(number, signal.SIG_IGN)
     if os.getpid() != process:

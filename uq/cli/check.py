@@ -25,7 +25,7 @@ from uq.text.units import powers, typical, unit_of
 
 
 def check(path: str, model: str | None) -> None:
-    """Print what a study would run, if it is valid."""
+    """Print the planned run of a study, if the study is valid."""
     study = load_study(path, model, say)
     design = study.design
     heading(f"{path}: valid", study.description)
@@ -73,7 +73,7 @@ def check(path: str, model: str | None) -> None:
 
 
 def _until(design: DesignTable) -> str:
-    """Return at which sizes a run may stop, and on what."""
+    """Return the interim sizes at which a run may stop, and the stopping criterion."""
     from uq.assess.stopping import confidence, interim_sizes
 
     assert design.until is not None
@@ -133,7 +133,7 @@ _SURE = 1.2  # a forecast with a wider margin is shown with its band
 
 
 def plan(study: Study, workers: int | None, json: bool) -> None:
-    """Run a few rows of a study; show what the whole will cost, and how wide intervals will be."""
+    """Run a pilot of a study; show the expected cost and interval widths of the full run."""
     cost, dataset = pilot(study, workers, say_compiling, say)
     rows = Result(dataset)
     failures, widths = int(rows.failed.sum()), expected_widths(rows)

@@ -71,7 +71,7 @@ Line = tuple[str, ...]
 
 
 def _lines(output: ComparedOutput, size: float, variable: str) -> Iterator[Line]:
-    """Yield the statistics of an output, in a unit of some size, and ratios of them."""
+    """Yield the statistics of an output, in a unit of size `size`, and their ratios."""
     for statistic in output.statistics:
         first = statistic.first
         per = size if first.unit == output.units else 1.0
@@ -88,7 +88,7 @@ def _cells(statistic: ComparedStatistic, per: float = 1.0) -> Line:
 
 
 def _apart(statistic: ComparedStatistic, apart: Estimate, per: float, nothing: float = 0.0) -> Line:
-    """Return value and interval of a difference, and a mark where it excludes `nothing`."""
+    """Return value and interval of a difference, with a mark if it excludes `nothing`."""
     sure = apart.low > nothing or apart.high < nothing
     value, ends = cells(apart, per)
     if statistic.identical:
@@ -116,7 +116,7 @@ def bought(differences: Comparison) -> list[str]:
 
 
 def _both(first: float, second: float, units: str) -> str:
-    """Return two numbers in the unit in which the first is read."""
+    """Return two numbers in the readable unit of the first."""
     unit = unit_of(units, first)
     return f"{number(first / unit.size)} to {in_unit(second, unit)}"
 

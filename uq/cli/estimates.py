@@ -45,7 +45,7 @@ def _ends(estimate: Estimate, per: float) -> str:
 
 
 def twin(result: Path, model: str | None, json: bool) -> None:
-    """Show means and probabilities sharpened with the study's twin."""
+    """Show control-variate estimates of means and probabilities with the study's twin."""
     opened = Result.open(result)
     fidelities = with_twin(opened, model)
     if json:
@@ -85,7 +85,7 @@ def twin(result: Path, model: str | None, json: bool) -> None:
 
 
 def convergence(result: Path, output: str | None, json: bool) -> None:
-    """Show running estimates, and whether sampling is still the largest error."""
+    """Show running estimates, and whether the sampling error dominates."""
     opened = Result.open(result)
     outputs = converging(opened, output)
     if json:
@@ -123,7 +123,7 @@ def fleet(
     plain: bool,
     json: bool,
 ) -> None:
-    """Show when the first of some units ends, and how many have ended by a time."""
+    """Show the first failure time in a fleet, and the number of failures by a time."""
     opened = Result.open(result)
     units = the_life(opened.independent, output).declared.unit if by else ""
     times = [read_threshold("--by", text, "a life", units) for text in by]

@@ -17,7 +17,7 @@ _STEPS = (
 
 
 def guide() -> None:
-    """Print the steps to a report, and what can be done with the files in this folder."""
+    """Print the steps to a report, and possible commands for the files in this folder."""
     heading("uq", "lifetime and sensitivity studies of vibro-impact machines")
     grid(_STEPS)
     if here := _with_what_is_here():

@@ -169,7 +169,7 @@ def next_inspection(
     life: str | None,
     json: bool,
 ) -> None:
-    """Show how far inspections of more units would narrow what units share."""
+    """Show the expected reduction of the shared uncertainty by inspecting more units."""
     opened = Result.open(result)
     at = [read_threshold("--at", text, "a life", unit_of_time(opened, output)) for text in times]
     expected = worth(opened, output, at, units, cv, life)

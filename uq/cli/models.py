@@ -49,7 +49,7 @@ def as_json(model: Model) -> dict[str, Any]:
 
 
 def _declared(parameter: Parameter) -> dict[str, Any]:
-    """Return what a parameter declares; that it belongs to the initial condition only where so."""
+    """Return the declaration of a parameter; the initial-condition flag only if set."""
     declared = asdict(parameter)
     return {name: value for name, value in declared.items() if name != "initial" or value}
 

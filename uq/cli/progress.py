@@ -37,8 +37,8 @@ def say_compiling() -> None:
 class Pace:
     """Rows per second, without the time in which processes start and models compile.
 
-    That is since the first rows arrived, or since the start if they took longer than starting does:
-    slow rows of several workers arrive together.
+    Time counts from the arrival of the first rows, or from the start if these rows took longer than
+    starting processes: slow rows of several workers arrive together.
     """
 
     def __init__(self) -> None:
@@ -85,12 +85,12 @@ def _plain() -> Iterator[Report]:
 
 
 def say(line: str) -> None:
-    """Tell the user something on standard error."""
+    """Print a line on standard error."""
     print(line, file=sys.stderr, flush=True)
 
 
 def say_plain(*lines: str) -> None:
-    """Tell the user lines on standard error, without control characters."""
+    """Print lines on standard error, without control characters."""
     for line in lines:
         say(plain_line(line))
 
@@ -157,7 +157,7 @@ def sentence(progress: Progress, pace: float, since: float = 0.0) -> str:
 
 
 def details(progress: Progress) -> list[str]:
-    """Return lines on how failed rows ended, and on what the others show so far."""
+    """Return lines on the status of failed rows and on preliminary statistics of the others."""
     lines = []
     if lost := [f"{label} {n}" for label, n in progress.status.items() if n and label != "ok"]:
         lines.append(", ".join(lost))

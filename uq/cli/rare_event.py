@@ -66,7 +66,7 @@ def as_json(ds: xr.Dataset) -> dict[str, Any]:
 
 
 def _unseen(ds: xr.Dataset) -> dict[str, Any]:
-    """Return what plain rows and rows drawn wide show of parts that the method missed."""
+    """Return the results of plain rows and widened laws on parts missed by the method."""
     if "wide" not in ds:
         return {}
     names = {"value": "wide", "low": "wide_low", "high": "wide_high"}
@@ -106,7 +106,7 @@ def _shown_unseen(ds: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def _part_alone(ds: xr.Dataset) -> str:
-    """Say beside the interval if it holds for a part of the event only."""
+    """Return a remark beside the interval if it covers only a part of the event."""
     return "" if ds.attrs["interval_of"] == "event" else f", only {ds.attrs['interval_of']}"
 
 

@@ -46,7 +46,7 @@ def amended(
 def carried_out(
     target: Path, quiet: bool, options: RunOptions, action: Callable[[RunOptions], xr.Dataset]
 ) -> tuple[xr.Dataset, str]:
-    """Show the progress of a run; return its result and a line on what was done."""
+    """Show the progress of a run; return its result and a line that summarises the run."""
     began = time.monotonic()
     computed = reused = 0
     with progress.shown(quiet) as show:

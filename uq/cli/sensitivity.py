@@ -19,7 +19,7 @@ from uq.text.units import typical, unit_of
 
 
 def show(result: Result, sensitivities: Sensitivities) -> None:
-    """Print the indices of each target, or why there are none."""
+    """Print the sensitivity indices of each target, or the reason if there are none."""
     dropped = sensitivities.groups_dropped
     lost = f", {counted(dropped, 'group')} dropped" if dropped else ""
     more = f"of {counted(sensitivities.rows_used, 'row')}{lost}"
@@ -66,7 +66,7 @@ def _lines(table: Values, indices: Indices, per: float) -> Iterator[list[str]]:
 
 
 def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
-    """Show the shares of the variance by level."""
+    """Show the variance components by level."""
     opened = Result.open(result)
     decomposition = by_level(opened, output, plain=plain)
     if json:

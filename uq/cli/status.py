@@ -50,7 +50,7 @@ def _show_status(run: RunStatus) -> None:
 
 
 def verify(path: Path, model: str | None) -> int:
-    """Check a result and print what was found; return the exit code."""
+    """Verify a result and print the findings; return the exit code."""
     holds = checksum_holds(path)
     words = {True: "right", False: "WRONG: the file has changed since it was written", None: "none"}
     console.print(f"checksum  {words[holds]}")
@@ -108,8 +108,8 @@ def plain(recomputed: RowAgain) -> dict[str, Any]:
     -------
     dict
         ``row``, ``equal``, ``place`` in the design, and the row as `uq simulate` prints it. Where
-        it is not equal, ``reason``, and if it was computed again ``differing`` and ``again``. What
-        differs here from what made the result is in ``versions``, ``[there, here]``.
+        it is not equal, ``reason``, and if it was computed again ``differing`` and ``again``.
+        ``versions`` has the versions that differ from those of the result, ``[there, here]``.
     """
     again = recomputed.again
     entry: dict[str, Any] = {

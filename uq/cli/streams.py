@@ -143,5 +143,5 @@ def _failure(stream: TextIO) -> OSError | None:
 
 
 def _discard(stream: TextIO) -> None:
-    """Discard what the interpreter would write on exit."""
+    """Discard buffered text that the interpreter would write on exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

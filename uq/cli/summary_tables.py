@@ -70,7 +70,7 @@ def show_summary(result: Result, summary: Summary, boundary: Statistic | None = 
 
 
 def show_answer(answer: Answer) -> None:
-    """Print the answer: what can be promised, what it depends on, and what to do."""
+    """Print the answer: tolerance bounds, main drivers and recommended actions."""
     lead = answer.lead
     if answer.failed or lead is None:
         paragraph(answer.rows_sentence, indent=0)
@@ -103,7 +103,7 @@ Line = tuple[str, str, str, str]
 
 
 class Block(NamedTuple):
-    """How the numbers of an output are shown: their unit, that of the model, what is compared."""
+    """Format of the numbers of an output: shown unit, model unit, and comparison."""
 
     unit: ReadableUnit
     units: str
@@ -143,7 +143,7 @@ def _is_shown(statistic: Statistic) -> bool:
 
 
 def _otherwise(statistic: Statistic) -> Statistic | None:
-    """Return the same by another estimator, where it has a label of its own."""
+    """Return the statistic by another estimator, if that has a separate label."""
     otherwise = statistic.otherwise
     return otherwise if otherwise and otherwise.label else None
 
@@ -184,7 +184,7 @@ def _reasons(output: Described, block: Block) -> Iterator[str]:
 
 
 def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:
-    """Print the laws that fit side by side, with their B-lives, and why the others do not."""
+    """Print the adequate life distributions with their B-lives, and why others are rejected."""
     for law, fit in fits.items():
         if fit.refused:
             paragraph(f"{law}: {fit.refused}", indent=2)

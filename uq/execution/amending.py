@@ -1,4 +1,4 @@
-"""Existing result: extended, its failed rows computed again, or verified."""
+"""Changes to an existing result: extend it, rerun failed rows, or verify rows."""
 
 import json
 import os
@@ -30,14 +30,14 @@ from uq.study.definition import Study, refusal_to_extend
 
 
 def study_of(path: Path, model: str | None = None) -> Study:
-    """Return the study of a result, or of the rows kept for one that is not complete.
+    """Return the study of a result, complete or not.
 
     Parameters
     ----------
     path : Path
         Of the result.
     model : str, optional
-        Where its model lives, if it is not installed.
+        Location of its model, if it is not installed.
 
     Returns
     -------
@@ -47,7 +47,7 @@ def study_of(path: Path, model: str | None = None) -> Study:
     Raises
     ------
     InputError
-        When there is nothing, or the model here differs from the one that computed it.
+        When nothing is there, or the installed model differs from the one that computed it.
     """
     if not os.path.isfile(path) and (run_history := history(folder_of(path))):
         run = run_history.run
@@ -85,7 +85,7 @@ def extend(
     Returns
     -------
     xarray.Dataset
-        The same bits as if it had had this many samples from the start.
+        Bitwise equal to a run with this many samples from the start.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def extend(
     if samples > current and problem:
         raise InputError(f"{path}: {problem}")
     study = study.with_samples(samples)
-    # This many are wanted, whatever the precision: [design] until does not apply.
+    # The requested number is computed at any precision: [design] until does not apply.
     design = study.design.model_copy(update={"until": None})
     return runner.run_study(replace(study, design=design), path, options)
 
@@ -153,13 +153,13 @@ def rerun_failed(
 
 
 ROWS = 16
-"""Rows to recompute."""
+"""Number of rows to recompute."""
 
-_NOT_AGAIN = (Status.CRASHED, Status.TIMED_OUT)  # they would do the same to this process
+_NOT_AGAIN = (Status.CRASHED, Status.TIMED_OUT)  # they would crash or block this process too
 
 
 def checksum_holds(path: Path) -> bool | None:
-    """Return whether a result is as written; None if it has no checksum.
+    """Return whether the checksum of a result matches; None if it has no checksum.
 
     Raises
     ------

@@ -32,15 +32,15 @@ class ModelSpec(NamedTuple):
     model : str
         Reference for `uq.study.installed_models.model_at`.
     version : str
-        Of the model that is wanted.
+        Required version of the model.
     settings : tuple of (str, object)
         Names and values.
     output : str
         The cheap output to be computed alone; "" for all outputs.
     code : str
-        `uq.study.installed_models.code_of` the wanted model; "" for any.
+        `uq.study.installed_models.code_of` the required model; "" for any.
     probed : bool
-        Whether single rows are to be run, of a function that does not declare its outputs.
+        Whether single rows are run to infer the outputs of a function that does not declare them.
     """
 
     model: str
@@ -51,7 +51,7 @@ class ModelSpec(NamedTuple):
     probed: bool = False
 
     def load(self) -> tuple[Model, Any]:
-        """Return the model, as far as it is wanted, and its settings.
+        """Load the model, reduced to the requested output, and its settings.
 
         Raises
         ------
@@ -87,7 +87,7 @@ Answer = Callable[..., tuple[str, Any]]
 
 
 FIRST_SECONDS = 5.0
-"""Beyond its limit for a first call, which loads compiled code: 1 s, more on a busy computer."""
+"""Extra time for a first call, which loads compiled code: about 1 s, more on a busy computer."""
 
 _POLL_SECONDS = 0.2  # so that an interrupt is seen
 
@@ -175,9 +175,9 @@ def _evaluation(spec: ModelSpec, limit: float | None) -> tuple[tuple[bool, bool]
 
 
 def _probe(spec: ModelSpec) -> tuple[tuple[bool, bool], Answer]:
-    """Return the same for single rows of a function that does not declare its outputs.
+    """Return the flags and the evaluation of single rows, to infer undeclared outputs.
 
-    The answer is what a row returns, as plain data, or a sentence on how it failed.
+    The answer is the return value of a row as plain data, or a sentence on its failure.
     """
     batch: Any = model_at(spec.model).batch
 
@@ -193,9 +193,9 @@ def _probe(spec: ModelSpec) -> tuple[tuple[bool, bool], Answer]:
 
 
 def main(handle: str) -> None:
-    """Answer requests until the connection closes; first comes what the process is for.
+    """Answer requests until the connection closes.
 
-    That is a `ModelSpec`, with the time limit of a row.
+    The first message is a `ModelSpec`, with the time limit of a row.
     """
     _end_with_parent()
     os.dup2(1, 2)  # warnings of the model go where its prints go

@@ -25,7 +25,7 @@ from uq.result.workload import Workload
 from uq.study.provenance import differences, versions
 
 _UNUSED = "127.0.0.1:0"
-"""Some free port of this computer, with nothing behind it: dask wants one."""
+"""Placeholder address without a server: dask requires one."""
 
 
 @contextmanager
@@ -74,7 +74,7 @@ def local_workers(
 
 @contextmanager
 def scratch() -> Iterator[None]:
-    """Have dask's folders removed at once: workers without a limit of memory keep nothing there."""
+    """Remove dask's scratch folders at once: workers without a memory limit do not use them."""
     places = sys.path.copy()
     with (
         TemporaryDirectory(prefix="uq-") as folder,
@@ -145,7 +145,7 @@ def remote_workers(
 
 
 def _check_address(where: str, address: str) -> None:
-    """Refuse what dask cannot connect to, before it tries and leaves its traceback."""
+    """Refuse an address that dask cannot connect to, before dask prints a traceback."""
     if not re.fullmatch(
         r"((tcp|tls|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+):\d{1,5}", address
     ):
@@ -166,7 +166,7 @@ def _check_certificates(where: str, encrypted: bool) -> None:
 
 
 def _check_versions(client: Client, where: str) -> None:
-    """Refuse workers that would give other bits, or would not survive their first task."""
+    """Refuse workers with versions that change results or make tasks fail."""
     by_worker = client.run(differences, versions(), on_error="return")
     if not by_worker:
         raise InputError(f"{where}: the cluster has no workers; start some with 'dask worker'")

@@ -32,7 +32,7 @@ def evaluate_rows(
     start: int,
     run: str = "",
 ) -> tuple[Chunk, float]:
-    """Run some rows on a worker; return their outputs and the time it took [s].
+    """Run rows on a worker; return their outputs and the elapsed time [s].
 
     One dask task, given plain data only: a worker that lacks the model would not survive receiving
     one of its objects.

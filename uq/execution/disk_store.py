@@ -1,4 +1,4 @@
-"""Rows kept on disk as they arrive, whatever happens, and merged into one result."""
+"""Crash-safe storage of arriving rows on disk, merged into one result at the end."""
 
 import time
 from collections import Counter
@@ -38,7 +38,7 @@ from uq.text.literals import read_toml, toml
 
 
 def define(file: Any, ds: xr.Dataset, total: int) -> None:
-    """Write everything in a result but the rows."""
+    """Write the schema of a result without its rows."""
     variables, attributes = xr.conventions.encode_dataset_coordinates(ds)
     file.setncatts(attributes)
     for dim, size in ds.sizes.items():
@@ -83,7 +83,7 @@ def variants_of(records: Sequence[RowsRecord]) -> list[dict[str, Any]]:
 
 
 def rerun(variants: Sequence[Mapping[str, Any]], code: int, count: int) -> xr.Variable:
-    """Return which of these settings some rows were computed with, as a variable of a result."""
+    """Return the variable that flags the settings variant of rows computed again."""
     labels = ["no", *(f"changed-{i}" for i in range(1, len(variants)))]
     attrs: dict[str, Any] = {
         "role": "rerun",
@@ -111,7 +111,7 @@ _FIRST_COST = 0.01  # of writing [s], before it is known: a very short run write
 _PENDING_BYTES = 8_000_000  # in memory at most
 
 Origin = tuple[dict[str, str], dict[str, Any]]
-"""Processor and versions that computed rows, and their settings that differ from the study's."""
+"""Provenance of rows: processor and versions, and settings that differ from the study."""
 
 
 class DiskStore(MemoryStore):
@@ -150,16 +150,16 @@ class DiskStore(MemoryStore):
 
     @property
     def end(self) -> int:
-        """Number after the last row that is there."""
+        """Number of the last stored row plus one."""
         return max((record.blocks[-1][1] for record in self._records), default=0)
 
     @property
     def made(self) -> list[dict[str, str]]:
-        """Processors and versions that computed the rows that were found, each once."""
+        """Distinct processors and versions that computed the stored rows."""
         return [dict(pairs) for pairs in {tuple(record.made.items()) for record in self._records}]
 
     def find(self, records: list[RowsRecord]) -> int:
-        """Take the rows kept earlier; return how many are damaged and therefore missing."""
+        """Load the rows stored earlier; return the number of damaged ones, which are missing."""
         damaged = 0
         for record in records:
             if self._load(record) is None:
@@ -197,7 +197,7 @@ class DiskStore(MemoryStore):
         super().add(start, rows, chunk)
 
     def keep_up(self) -> None:
-        """Write what has arrived, unless that would exceed the share of time for writing.
+        """Write the arrived rows, unless that would exceed the share of time for writing.
 
         Raises
         ------
@@ -217,10 +217,10 @@ class DiskStore(MemoryStore):
         self.reused = self.done
 
     def dataset(self) -> xr.Dataset:
-        """Write the result of a complete run, and remove what it was made from.
+        """Write the result of a complete run and remove its chunk files.
 
-        It depends on the rows alone, not on how they are split into chunk files, which are read one
-        at a time: memory does not grow with the rows.
+        The result does not depend on the split into chunk files. They are read one at a time, so
+        memory use does not grow with the number of rows.
 
         Raises
         ------
@@ -254,7 +254,7 @@ class DiskStore(MemoryStore):
                 place(file, ds, record.blocks)
 
     def close(self) -> None:
-        """Write what has arrived, if possible, and remove useless files."""
+        """Write the arrived rows, if possible, and remove useless files."""
         if not self.shapes_all_wrong:
             with suppress(RunError):
                 self._write()
@@ -301,7 +301,7 @@ class DiskStore(MemoryStore):
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
-        """Say what a disk that cannot be written means for the run."""
+        """Convert a disk error into a message with its consequence for the run."""
         try:
             yield
         except OSError as error:

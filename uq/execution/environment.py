@@ -1,4 +1,4 @@
-"""Other processes, which import and compile as this one."""
+"""Start of child processes with the same imports and compilation as this process."""
 
 import os
 import subprocess
@@ -24,7 +24,7 @@ def command(module: str, *arguments: str) -> list[str]:
 
 
 def inherited() -> dict[str, str]:
-    """Return the environment of a process that must give the same bits as this one."""
+    """Return the environment of a process with bitwise equal results."""
     environment = dict(os.environ) | {"PYTHONPATH": os.pathsep.join(sys.path)}
     return SINGLE_THREADED | environment | _numba_settings()
 
@@ -51,7 +51,7 @@ def _numba_settings() -> dict[str, str]:
 def started(
     module: str, prints: int = subprocess.DEVNULL
 ) -> tuple[subprocess.Popen[bytes], Connection]:
-    """Start a process with a connection to this one, the number of which is its argument.
+    """Start a process connected to this one; its argument is the number of the connection.
 
     It is in a session of its own: Ctrl-C reaches this process, which ends the other.
 

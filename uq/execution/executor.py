@@ -35,7 +35,7 @@ _CHUNKS_PER_SECOND = 50
 # Longest chunk that is a whole block of the kernel: half a block may take as long.
 _BLOCK_SECONDS = 5.0
 GROWTH = 4
-"""Ratio of the rows of successive chunks, until they are good ones."""
+"""Growth factor of successive chunks until they reach the target size."""
 
 _FIRST_ROWS = 16
 _SENT_CHUNKS = 4  # at least, also while workers start
@@ -57,7 +57,7 @@ def first_chunk(workload: Workload, options: RunOptions = DEFAULTS) -> int:
 def good_chunk(
     workload: Workload, options: RunOptions = DEFAULTS, row_seconds: float = 0.0, threads: int = 1
 ) -> int:
-    """Return the rows of a good chunk: whole groups of the design.
+    """Return the chunk size in rows, a multiple of the groups of the design.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def good_chunk(
     row_seconds : float
         Cost of a row [s], 0 if unknown.
     threads : int, optional
-        How many chunks are computed at the same time.
+        Number of chunks computed concurrently.
     """
     limit, wish = options.row_limit, options.chunk_rows
     inputs = 8 * len(workload.model.parameter_names)
@@ -89,7 +89,7 @@ def _whole_groups(workload: Workload, rows: int) -> int:
 
 
 class Dispatcher:
-    """Has the rows of a workload computed, in order.
+    """Dispatch the rows of a workload in order, and collect them.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ class Dispatcher:
         self.store.keep_up()
 
     def report_progress(self) -> None:
-        """Report how far the run is."""
+        """Report the progress of the run."""
         store = self.store
         seen = store.preview.median, store.preview.shares
         counts = store.done, store.total, store.failed, store.reused, dict(store.status)
@@ -230,16 +230,16 @@ class Dispatcher:
 SHORT_SECONDS = 4.0
 """Shorter work is not worth starting workers."""
 
-_SHARE_HERE = 1 / 64  # of the rows, to learn what they cost before workers take chunks of them
+_SHARE_HERE = 1 / 64  # of the rows, to measure their cost before workers start
 
 
 def in_one_process(workers: int | None, seconds: float) -> bool:
-    """Return whether one process computes work that takes it so long [s], without workers."""
+    """Return whether work of a given duration [s] is done in one process without workers."""
     return workers == 0 or (workers is None and seconds < SHORT_SECONDS)
 
 
 def processes(workload: Workload, workers: int | None) -> int:
-    """Return how many processes compute at the same time, if the work is worth starting workers."""
+    """Return the number of concurrent processes, if starting workers pays off."""
     from dask.system import CPU_COUNT  # within affinity and container limits
 
     return min(1 if workers == 0 else workers or CPU_COUNT, workload.total // workload.group)
@@ -248,7 +248,7 @@ def processes(workload: Workload, workers: int | None) -> int:
 def first_rows_alone(workload: Workload, workers: int | None) -> bool:
     """Return whether one process computes the first rows, before workers share the others.
 
-    It learns what they cost, and compiles the model, which one from outside does not need.
+    That process measures the cost of a row and compiles the model. External models need neither.
     """
     return not workers or not isinstance(workload.model.batch, RowByRow)
 

@@ -1,7 +1,7 @@
-"""Rows computed in separate processes, which they may crash or never leave.
+"""Rows computed in separate processes, in case they crash or hang.
 
-Such rows are computed again in parts, down to single rows: the guilty ones get a status and a
-message, the others the same values as anywhere.
+Such rows are computed again in parts, down to single rows. Rows that crash or time out get a status
+and a message; the others get the same values as in any other process.
 """
 
 import signal
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 TRIES = 3
-"""How often rows kill their process before they are blamed: it may be killed from outside."""
+"""Crashes before rows are marked as crashed: a process may also be killed externally."""
 
 _PARTS = 8  # of rows that crashed: more are too small for kernels, fewer crash more often
 _STARTS = 3
@@ -45,7 +45,7 @@ Evaluate = Callable[[Floats, NDArray[np.uint64], int], Chunk]
 
 
 def spec_of(workload: "Workload") -> child.ModelSpec:
-    """Return what a process needs to compute rows of a workload."""
+    """Return the specification of the model that a process needs for a workload."""
     settings = tuple(asdict(workload.settings).items())
     code = code_of(workload.model_reference)
     return child.ModelSpec(
@@ -114,8 +114,8 @@ class Isolated:
         return joined([part(x[i : i + size], seed[i : i + size], start + i) for i in parts])
 
     def _single(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
-        """Run one row by itself, to find out whether it is guilty."""
-        for _ in range(TRIES - 1):  # that of its chunk was the first
+        """Run one row alone, to determine whether it crashes the process."""
+        for _ in range(TRIES - 1):  # the run of its chunk was the first try
             outcome = self.ask(x, seed, start)
             if not isinstance(outcome, RowFailure):
                 return cast(Chunk, outcome)
@@ -129,12 +129,12 @@ class Isolated:
         return lost_rows(model, settings, 1, fault, start)
 
     def close(self) -> None:
-        """End the process, whatever it is doing."""
+        """Terminate the process, even if it is busy."""
         self._closed.set()
         self._end(at_once=True)
 
     def ask(self, x: Sequence[float] | Floats, *others: Any) -> Any | RowFailure:
-        """Return the answer of the process on some rows, or how they ended it."""
+        """Return the answer of the process for rows, or the failure that ended it."""
         try:
             connection = self.start()
             connection.send((x, *others))
@@ -151,7 +151,7 @@ class Isolated:
         return value
 
     def _patience(self, rows: int) -> float | None:
-        """Return how long rows that are computed together may take [s]."""
+        """Return the time limit of rows computed together [s]."""
         if self.limit is None:
             return None
         if self._stops_rows:
@@ -159,7 +159,7 @@ class Isolated:
         return self.limit + (child.FIRST_SECONDS if self._loads_first else 0.0)
 
     def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
-        """Return the answer of the process, or None when its time is over."""
+        """Return the answer of the process, or None at the time limit."""
         return child.answer_of(connection, limit, self._compiling, self._waiting)
 
     def begin(self) -> None:
@@ -243,7 +243,7 @@ class Children:
         limit: float | None = None,
         compiling: Action = lambda: None,
     ) -> None:
-        """Start processes before there are rows for them, until there are so many.
+        """Start processes in advance, up to a total of `count`.
 
         Parameters
         ----------
@@ -288,14 +288,14 @@ class Children:
                 discarded.close()
 
     def end_idle(self) -> None:
-        """End those that nobody uses."""
+        """Terminate the idle processes."""
         with self._lock:
             idle, self._idle = self._idle, []
         for process in idle:
             process.close()
 
     def close(self) -> None:
-        """End all, whatever they are doing; those who use one see a `RunError`."""
+        """Terminate all processes; callers that use one get a `RunError`."""
         with self._lock:
             self._closed = True
             every = [*self._idle, *self._busy]

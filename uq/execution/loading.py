@@ -1,7 +1,7 @@
-"""Studies and models, with functions that do not declare what they return run to find out.
+"""Load studies and models, and infer the outputs of functions that do not declare them.
 
-The nominal row and the first rows of the design are run, in a process of their own; what they
-return is remembered on this computer until the function changes.
+The nominal row and the first rows of the design are run in a separate process. The inferred outputs
+are cached on this computer until the function changes.
 """
 
 import hashlib
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from uq.study.definition import Study
 
 SEEN = 64
-"""Rows of a design that show what a function returns."""
+"""Number of rows of a design used to infer the outputs of a function."""
 
 _WORTH_KEEPING = 1.0  # seconds that these rows took
 _SLOW = 3.0  # seconds after which a user is told that rows are run
@@ -55,9 +55,9 @@ def load_study(
         Use this model instead of the file's: an installed name, ``"package.module:ATTRIBUTE"``,
         or a file ``"mine.py"`` (``"mine.py:NAME"`` where it has several).
     say : callable, optional
-        Called with a line for the user if it takes long to find out what the model returns.
+        Called with a line for the user if inferring the outputs of the model takes long.
     row_limit : float, optional
-        Time limit of a row that is run to find out [s].
+        Time limit of a row that is run to infer outputs [s].
 
     Returns
     -------
@@ -66,7 +66,7 @@ def load_study(
     Raises
     ------
     InputError
-        Everything that is wrong with the file, one line per fault.
+        All faults of the file, one line each.
 
     Examples
     --------
@@ -97,12 +97,12 @@ def study_of_text(text: str, source: str, model: str | None) -> "Study":
 
 
 def load_model(reference: str) -> Model:
-    """Return a model; what a function returns that does not declare it, by its nominal row."""
+    """Load a model; undeclared outputs of a function are inferred from its nominal row."""
     return model_at(known_reference(reference))
 
 
 def known_reference(reference: str) -> str:
-    """Return a reference that holds in any process, to a model of which the outputs are known."""
+    """Return a reference, valid in any process, to a model with known outputs."""
     reference = located(reference)
     model = model_at(reference)
     if model.outputs:
@@ -130,7 +130,7 @@ def _with_outputs(study: "Study", say: Say = ignore, limit: float | None = None)
 def _observed_outputs(
     reference: str, tried: list[Row], say: Say = ignore, limit: float | None = None
 ) -> dict[str, Returned]:
-    """Return the outputs of a function, observed in the rows tried, the nominal one first."""
+    """Infer the outputs of a function from trial rows, the nominal row first."""
     from uq.study.provenance import __version__
 
     numbers = np.array([[*row, seed] for row, seed in tried]).tobytes()
@@ -151,7 +151,7 @@ def _observed_outputs(
 def _returned(
     reference: str, tried: list[Row], say: Say, limit: float | None
 ) -> Iterator[dict[str, Returned]]:
-    """Yield what rows return; a later one that fails is passed over, as in a run it has a status.
+    """Yield the outputs inferred from trial rows; failures after the nominal row are skipped.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Options of a run and its progress; no option changes a bit of a sound row."""
+"""Options of a run and its progress; no option changes the values of a valid row."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -9,14 +9,14 @@ from uq.errors import InputError
 
 
 class Progress(NamedTuple):
-    """How far a run is.
+    """Progress of a run.
 
     Attributes
     ----------
     done, total, failed : int
         Rows.
     reused : int
-        Rows among those done that were there from the start.
+        Rows among those done that had been computed before this run.
     status : dict of str to int
         Status label -> rows.
     median : tuple of (str, float) or None
@@ -28,7 +28,7 @@ class Progress(NamedTuple):
     compiling : bool
         Whether the model is being compiled, and rows wait for it.
     under_way : int
-        Rows that workers have begun.
+        Rows that workers have started.
     """
 
     done: int
@@ -56,7 +56,7 @@ def ignore(_: object) -> None:
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How a run is carried out.
+    """Options of a run.
 
     Attributes
     ----------

@@ -51,7 +51,7 @@ _WORKERS_LOADS = 2.0
 
 
 class Cost(NamedTuple):
-    """What a run needs.
+    """Estimated resources of a run.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Cost(NamedTuple):
     seconds : float
         From start to result, once the model is compiled [s].
     seconds_low, seconds_high : float
-        95 % interval of it, from the scatter of the cost of rows.
+        95 % interval of `seconds`, from the scatter of the cost of rows.
     result_bytes : int
         The result.
     run_bytes : int
@@ -156,7 +156,7 @@ def pilot(
 
 
 def _load_seconds() -> float:
-    """Return how long a new process takes to load what a run needs [s]."""
+    """Return the time that a new process takes to import the packages of a run [s]."""
     began = time.perf_counter()
     subprocess.run(command("uq.cli.run"), env=inherited(), stdin=subprocess.DEVNULL, check=True)
     return time.perf_counter() - began
@@ -201,11 +201,11 @@ def _warm_up(
 def _spread_chunks(
     workload: Workload, evaluators: Sequence[Evaluate], size: int, least: int
 ) -> tuple[list[tuple[int, Rows, Chunk, float]], int]:
-    """Return chunks spread over the study, with their first row and time, and how many it has.
+    """Compute chunks spread over the study; return them with first row and time, and their total.
 
-    There are at least so many, and more as time allows.
+    At least the given number is computed, and more as time allows.
 
-    They are cut as in a run: rows that are computed together may share work.
+    Chunks are cut as in a run: rows that are computed together may share work.
     """
     chunks = ceil(workload.total / size)
     starts = [index * size for index in _spread(chunks)]
@@ -228,13 +228,13 @@ def _spread_chunks(
 
 
 def _spread(count: int) -> list[int]:
-    """Return 0..count-1 in an order, to be taken from its end, whose every part is spread out."""
+    """Return 0..count-1 in a low-discrepancy order, to be taken from its end."""
     stride = next(n for n in range(round(count * _GOLDEN), 0, -1) if gcd(n, count) == 1)
     return [index * stride % count for index in range(count)][::-1]
 
 
 def _row_cost(seconds: Sequence[float], rows: Sequence[int], chunks: int) -> tuple[float, float]:
-    """Return the time of a row [s] from some of the chunks, and its relative 95 % half-width."""
+    """Estimate the time of a row [s] from sampled chunks, with its relative 95 % half-width."""
     mean, m = sum(seconds) / sum(rows), len(seconds)
     if m == chunks:
         return mean, 0.0

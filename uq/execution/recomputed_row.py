@@ -1,4 +1,4 @@
-"""A row of a result, computed again here and compared with the one there."""
+"""Recomputation of a stored row, and its comparison with the stored values."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -23,7 +23,7 @@ from uq.study.row_sampling import row_block
 def study_here(
     text: str, identity: str, version: str, samples: int, source: str, model: str | None = None
 ) -> tuple[Study, str]:
-    """Return a study as the model here understands it, and what has changed in it since.
+    """Return a study under the installed model, and its first difference from the stored study.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
 
 
 def settings_by_row(ds: xr.Dataset, study: Study, places: np.ndarray) -> dict[int, Any]:
-    """Return the settings with which some rows of a result were computed, by place."""
+    """Return the settings used to compute the given rows of a result, by position."""
     settings: dict[int, Any] = {}
     for changes, rows in by_settings(ds):
         matching = places[rows[places]].tolist()
@@ -85,7 +85,7 @@ def settings_by_row(ds: xr.Dataset, study: Study, places: np.ndarray) -> dict[in
 
 
 def other_versions(ds: xr.Dataset, model: str | None = None) -> dict[str, tuple[str, str]]:
-    """Return what differs here from what made a result: name -> (there, here).
+    """Return the versions that differ from those that made a result: name -> (there, here).
 
     Compared are processor, Python, libraries and the code of the model.
     """
@@ -107,7 +107,7 @@ def computed_again(study: Study, settings: Any, number: int, status: int = Statu
     number : int
         From 0.
     status : int
-        How it ended before: one that crashed is computed in a process of its own.
+        Stored status: a row that crashed is computed in a separate process.
 
     Returns
     -------
@@ -124,7 +124,7 @@ def computed_again(study: Study, settings: Any, number: int, status: int = Statu
 
 
 def differing(again: Row, stored: xr.Dataset) -> list[str]:
-    """Return the names of the variables that differ by a bit between a row and the stored one.
+    """Return the names of variables that are not bitwise equal in a row and the stored one.
 
     Parameters
     ----------

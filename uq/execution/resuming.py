@@ -1,4 +1,4 @@
-"""Starting a run whose rows are kept on disk, or resuming it."""
+"""Start or resume a run whose rows are kept on disk."""
 
 import os
 import time
@@ -121,7 +121,7 @@ def drop_leftovers(path: Path) -> None:
 
 
 def _usable(folder: Path, study: Study, again: Mapping[str, Any] | None) -> History | None:
-    """Return the history of a folder, if it is of use; refuse that of another study."""
+    """Return the history of a folder if its rows can be reused; refuse another study."""
     run_history = history(folder)
     if run_history is None:
         return None
@@ -199,7 +199,7 @@ def _adopt(store: DiskStore, study: Study, path: Path, ds: xr.Dataset, all_rows:
 
 
 def _incomplete(ds: xr.Dataset, study: Study) -> str:
-    """Return what a result lacks of the rows of its study, or ""."""
+    """Return a message on the rows of the study that a result lacks, or ""."""
     if not np.array_equal(ds["row"].values, np.arange(ds.sizes["row"])):
         return "'row' does not number all rows from 0"
     for name in study.model.parameter_names:

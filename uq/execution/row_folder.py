@@ -127,12 +127,12 @@ class History(NamedTuple):
 
     @property
     def kept(self) -> list[RowsRecord]:
-        """Records that count, each row once."""
+        """Valid records, each row once."""
         return without_overlap(self.chunks, self.run.rows)
 
     @property
     def complete(self) -> bool:
-        """Whether all rows are there."""
+        """Whether all rows are present."""
         return not missing(self.kept, self.run.rows)
 
 
@@ -151,7 +151,7 @@ def understood(records: Sequence[Record]) -> list[RunRecord | RowsRecord]:
 
 
 def history_of(records: Sequence[Record]) -> History | None:
-    """Return what a journal records; None if no run has started."""
+    """Return the history recorded in a journal; None if no run has started."""
     run, chunks, before = None, list[RowsRecord](), 0
     for record in understood(records):
         if isinstance(record, RowsRecord):
@@ -174,13 +174,13 @@ def without_overlap(records: Sequence[RowsRecord], total: int) -> list[RowsRecor
 
 
 def _is_free(taken: Sequence[Block], start: int, stop: int) -> bool:
-    """Return whether a block overlaps none of some ascending blocks."""
+    """Return whether a block is disjoint from the given ascending blocks."""
     place = bisect_left(taken, (stop, 0))
     return not place or taken[place - 1][1] <= start
 
 
 def missing(records: Sequence[RowsRecord], total: int) -> list[Block]:
-    """Return the blocks of rows that are in none of some records without overlap."""
+    """Return the blocks of rows missing from non-overlapping records."""
     blocks = sorted(block for record in records for block in record.blocks)
     edges = [0, *(edge for block in blocks for edge in block), total]
     return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
@@ -197,7 +197,7 @@ def folder_of(path: Path) -> Path:
 
 
 def history(folder: Path) -> History | None:
-    """Return what the journal of a folder records; None if no run has started there."""
+    """Return the history recorded in the journal of a folder; None if no run has started."""
     try:
         return history_of(read(folder / JOURNAL))
     except OSError as error:
@@ -225,8 +225,8 @@ def computer(host: str) -> str:
 def is_held(folder: Path) -> bool:
     """Return whether a process holds the lock of a folder, or may hold it on another computer.
 
-    A process that has ended does not, even if its number is in use again: this tries to take over
-    a copy of the lock, which disturbs nobody.
+    A terminated process holds no lock, even if its process id is reused: the check tries to take
+    over a copy of the lock, without side effects.
     """
     from filelock import SoftFileLock, Timeout
 
@@ -244,9 +244,9 @@ def is_held(folder: Path) -> bool:
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Create a folder if need be, and be the only process to write into it.
+    """Create a folder if needed and lock it for exclusive writing.
 
-    The lock of a process that is gone is taken over. A folder that is empty at the end is removed,
+    The lock of a terminated process is taken over. A folder that is empty at the end is removed,
     with those above it that were created with it.
 
     Parameters

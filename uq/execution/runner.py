@@ -1,8 +1,8 @@
-"""From a study to its result: rows in chunks, on this computer or on dask workers.
+"""Run of a study: rows in chunks, on this computer or on dask workers.
 
 The first rows always run on this computer. They compile the kernel once, before any worker needs
-it, show what a row costs, and are the first chunks of the result. A separate process computes them,
-because a row may crash it, unless the user wants a single process.
+it, measure the cost of a row, and are the first chunks of the result. A separate process computes
+them, because a row may crash it, unless the user requests a single process.
 """
 
 import os
@@ -123,7 +123,7 @@ def output_path(study: Study, output: str | Path | None = None) -> Path:
 
 
 def finished(study: Study, path: Path) -> xr.Dataset | None:
-    """Return the result of this study, if `path` holds it.
+    """Return the result of this study, if it is in `path`.
 
     If its [analysis], comments or sources have changed since, the file gets the new text. None also
     if it holds fewer samples and more can be appended; a study with [design] until is complete once
@@ -132,7 +132,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     Raises
     ------
     InputError
-        When `path` holds something else.
+        When `path` contains something else.
     """
     if not os.path.isfile(path):  # or it is out of reach
         return None
@@ -158,7 +158,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
 
 
 def line_on_other_code(study: Study, path: Path, ds: xr.Dataset) -> str:
-    """Say what to do about rows of a result that other code of the model computed."""
+    """Return advice on rows of a result computed by another version of the model."""
     if not is_other_code(ds.attrs, study.model_reference):
         return ""
     return (
@@ -216,7 +216,7 @@ def carry_out(
 
 
 def _check_budget(study: Study) -> None:
-    """Refuse a study with [design] until whose samples are not those of its file."""
+    """Refuse a study with [design] until if its number of samples differs from its file."""
     if study.design.until is not None:
         budget = read_study_text(study.text, study.path).design.samples
         if study.design.samples != budget:
@@ -227,7 +227,7 @@ def _check_budget(study: Study) -> None:
 
 
 def _interim_studies(study: Study | None, kept: disk_store.DiskStore | None) -> list[Study]:
-    """Return the study at each interim size, from the one that a resumed run had reached."""
+    """Return the study at each interim size, starting with the one reached by a resumed run."""
     if study is None or kept is None or study.design.until is None:
         return []
     parts = [study.with_samples(samples) for samples in stopping.interim_sizes(study.design)]

@@ -1,7 +1,7 @@
-"""The scales that a machine from outside declares, held to what it returns.
+"""Check the scaling exponents declared by an external machine against returned lives.
 
-Of some rows, the parameters that should only scale a life are changed and nothing else, from end to
-end of their laws. Machines of an installed package are held to it by their tests.
+In a few rows, only the parameters declared to scale a life are changed, over the full range of
+their laws. Machines of an installed package are checked by their tests.
 """
 
 import hashlib
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from uq.study.definition import Study
 
 _ENDS = np.array([1e-6, 1 - 1e-6])
-"""Probabilities at which the law of an input is taken to end."""
+"""Probabilities of the quantiles used as the ends of an input law."""
 
 _FAR = 4.0  # times the value of a parameter without a law, where a bound is farther
 _SAME = 1e-9  # relative difference
@@ -37,7 +37,7 @@ _EACH = 4  # rows that differ in scale alone
 
 
 def check_scales(study: "Study", row_limit: float | None = None) -> None:
-    """Compute a few rows, if scales are declared; remembered until the machine changes.
+    """Check the declared scaling exponents with a few rows; repeated only if the machine changes.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
 
 
 def _at_ends(study: "Study", row: Floats) -> Floats:
-    """Return a row with all inputs at the lower, and at the upper ends of their laws; (2, d)."""
+    """Return two rows, all inputs at the lower or at the upper ends of their laws, (2, d)."""
     rows = np.tile(row, (2, 1))
     for place, name in enumerate(study.model.parameter_names):
         if (ends := _ends_of_law(study, name)) is not None:
@@ -92,7 +92,7 @@ def _ends_of_law(study: "Study", name: str) -> Floats | None:
 
 
 def _scaled_anew(base: Floats, study: "Study", scaled: dict[str, Output]) -> Floats:
-    """Return a row, and some with other values of what scales, both ends of it; shape (4, d)."""
+    """Return the base row and rows with changed scaling parameters, shape (4, d)."""
     rng, rows = np.random.default_rng(1), np.tile(base, (_EACH, 1))
     model = study.model
     for name in dict.fromkeys(name for output in scaled.values() for name in output.scales):
@@ -109,7 +109,7 @@ def _scaled_anew(base: Floats, study: "Study", scaled: dict[str, Output]) -> Flo
 
 
 def _faults(model: Model, name: str, output: Output, x: Floats, chunk: Chunk) -> Iterator[str]:
-    """Yield how a life differs from the powers that its output declares."""
+    """Yield deviations of a life from its declared power law."""
     columns = [model.parameter_names.index(parameter) for parameter in output.scales]
     factor = np.prod(x[:, columns] ** np.array(list(output.scales.values())), axis=1)
     lives = chunk.columns[name].reshape(len(x), -1)
@@ -133,7 +133,7 @@ def _faults(model: Model, name: str, output: Output, x: Floats, chunk: Chunk) ->
 
 
 def _differ(lives: Floats, cut: Mask, expected: Floats, only_more: Mask) -> Mask:
-    """Return where lives are not as expected; where they, or what is expected, are cut: less."""
+    """Return the mask of lives that contradict the expected ones, allowing for censoring."""
     with np.errstate(invalid="ignore"):  # never over never
         same = (lives == expected) | (np.abs(lives / expected - 1) < _SAME)
         too_long = ~same & np.where(cut, lives > expected, lives < expected)
@@ -142,7 +142,7 @@ def _differ(lives: Floats, cut: Mask, expected: Floats, only_more: Mask) -> Mask
 
 
 def _kept(study: "Study", x: Floats, seed: NDArray[np.uint64]) -> Path:
-    """Return the file that exists once these rows have scaled as declared."""
+    """Return the path of the file that marks a passed check of these rows."""
     numbers = x.tobytes() + seed.tobytes()
     reference = study.model_reference
     key = hashlib.sha256(f"{reference}\n{code_of(reference)}".encode() + numbers).hexdigest()

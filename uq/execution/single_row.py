@@ -1,4 +1,4 @@
-"""One row of a model, in a process of its own if the model may end it."""
+"""One row of a model, in a separate process if the model may crash."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -20,7 +20,7 @@ def run_alone(
     seed: int = 0,
     compiling: Action = lambda: None,
 ) -> Row:
-    """Run a model once; what one from outside prints goes to standard error.
+    """Run a model once; output printed by an external model goes to standard error.
 
     Parameters
     ----------

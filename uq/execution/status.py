@@ -13,7 +13,7 @@ from uq.result import result_file
 
 @dataclass(frozen=True)
 class RunStatus:
-    """How far a run is.
+    """Progress of a run.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class RunStatus:
 
 
 def run_status(path: Path) -> RunStatus:
-    """Return how far the run of a result is.
+    """Return the progress of the run of a result.
 
     Parameters
     ----------

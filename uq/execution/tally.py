@@ -51,7 +51,7 @@ def pack(
 
 
 def unpack(data: NDArray[Any]) -> tuple[Rows, dict[str, NDArray[Any]], NDArray[np.int8]]:
-    """Return the parts that `pack` put together."""
+    """Split a structured array from `pack` into rows, columns and status."""
     rows = Rows(*(np.ascontiguousarray(data["rows"][field]) for field in Rows._fields))
     columns = {
         name: np.ascontiguousarray(data["columns"][name])
@@ -114,7 +114,7 @@ def blocks_of(numbers: NDArray[np.int64]) -> list[Block]:
 def in_order(
     pieces: Sequence[tuple[int, NDArray[Any]]],
 ) -> tuple[list[Block], list[NDArray[Any]]]:
-    """Sort pieces, each its first row number and its rows; return their blocks and their rows."""
+    """Sort pieces by first row number; return their blocks and their rows."""
     ordered = sorted(pieces, key=lambda piece: piece[0])
     numbers = [np.arange(start, start + len(data)) for start, data in ordered]
     return blocks_of(np.concatenate(numbers)), [data for _, data in ordered]
@@ -136,7 +136,7 @@ class MemoryStore:
     total : int
         Rows of the whole run.
     done : int
-        Rows that are there.
+        Rows that have arrived.
     failed : int
         Failed rows among them.
     reused : int
@@ -167,7 +167,7 @@ class MemoryStore:
 
     @property
     def shapes_all_wrong(self) -> str | None:
-        """What is wrong with the shape of every row so far, if every row has a wrong shape."""
+        """Message on the wrong shape, if every row so far has a wrong shape."""
         label = Status.BAD_SHAPE.label
         return self.failures[label][1] if 0 < self.status[label] == self.done else None
 
@@ -203,7 +203,7 @@ class MemoryStore:
         return len(data), int(np.count_nonzero(failed_rows(status, required))), by_status(status)
 
     def count(self, rows: int, failed: int, status: dict[str, int], failures: Failures) -> None:
-        """Count some rows."""
+        """Add rows to the counts."""
         self.done += rows
         self.failed += failed
         self.status.update(status)
@@ -241,7 +241,7 @@ def joined_failures(first: Failures, second: Failures) -> Failures:
 
 
 def row_bytes(workload: Workload | Study) -> int:
-    """Return roughly how many bytes a row takes, inputs and outputs."""
+    """Return the approximate size of a row, inputs and outputs [bytes]."""
     columns = columns_of(workload.model, workload.settings).values()
     outputs = sum(column.dtype.itemsize * prod(column.shape) for column in columns)
     return 8 * len(workload.model.parameter_names) + 32 + outputs

@@ -1,8 +1,8 @@
-"""Dask workers, whoever started them, and the chunks of rows that they compute.
+"""Dask workers, local or on a cluster, and the chunks of rows that they compute.
 
-The chunks of a killed worker are computed by another. A chunk that kills own workers `TRIES` times,
-or those of a cluster more often than dask's ``allowed-failures``, is halved until the guilty row is
-found, which is marked as crashed.
+The chunks of a killed worker are computed by another. A chunk that kills local workers `TRIES`
+times, or cluster workers more often than dask's ``allowed-failures``, is bisected until the
+crashing row is found, which is marked as crashed.
 """
 
 import gc
@@ -32,11 +32,11 @@ _Sent = tuple[int, Rows, int]
 """Number of the first row, the rows, and how often they have been sent."""
 
 Returned = tuple[int, Rows, Chunk, float]
-"""Number of the first row, the rows, their outputs, and what they cost [s], 0 if unknown."""
+"""Number of the first row, the rows, their outputs, and their cost [s], 0 if unknown."""
 
 
 class Workers:
-    """Workers that are connected, or about to be, with the chunks that they have or will get.
+    """Connected or expected workers, with their current and pending chunks.
 
     Parameters
     ----------
@@ -106,11 +106,11 @@ class Workers:
         return bool(self._client.status == "running")
 
     def begun(self, threads: int) -> int:
-        """Return how many rows so many threads have begun; the others wait for their turn."""
+        """Return the number of rows that `threads` threads have started; the others are queued."""
         return sum(len(rows.x) for _, rows, _ in islice(self._under_way.values(), threads))
 
     def send(self, start: int, rows: Rows, tries: int = 1) -> None:
-        """Have some rows computed."""
+        """Submit rows for computation."""
         how = self._spec, versions(), self._row_limit
         data = rows.x, rows.seed, start, self._run
         future = self._client.submit(evaluate_rows, *how, *data, pure=False)
@@ -118,7 +118,7 @@ class Workers:
         self._arrivals.add(future)
 
     def returned(self) -> list[Returned]:
-        """Return what is back, after a short wait if there is nothing.
+        """Return completed chunks, after a short wait if there are none.
 
         Raises
         ------

@@ -28,17 +28,17 @@ from uq.study.installed_models import find_model, model_at, model_names
 from uq.study.row_sampling import Rows, row_seeds
 
 STANDARD_ERRORS = 4.0
-"""Of the difference between two values: a smaller difference is no gap."""
+"""Smallest difference between two values, in standard errors, that separates attractors."""
 
 
 Compared = tuple[Floats, Floats, float]
-"""Values of every row, shape (n,), of which NaN agrees with NaN and infinity with infinity; their
-standard errors, 0 where there are none; and the tolerance, relative to the largest finite magnitude
-among the values; 0: equal or not."""
+"""Values of every row, shape (n,), where NaN equals NaN and infinity equals infinity; their
+standard errors, 0 if unknown; and the tolerance relative to the largest finite magnitude of the
+values, 0 for exact equality."""
 
 
 def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
-    """Return the number of the attractor of each row, the most frequent first.
+    """Return the attractor number of each row; 0 is the most frequent attractor.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class ParameterGrid:
     ----------
     model : Model
     reference : str
-        By which another process finds the model; empty if it cannot.
+        Reference of the model for other processes; empty if not importable.
     axes : dict of str to Axis
         Of the parameters that vary.
     constants : dict of str to float
@@ -154,7 +154,7 @@ def grid_of(
     Raises
     ------
     InputError
-        Everything that is wrong, one line each.
+        All faults, one line each.
     """
     if isinstance(model, str):
         resolved, reference = model_at(model), model
@@ -210,7 +210,7 @@ def basins(
     workers: int | None = None,
     scheduler: str | None = None,
 ) -> xr.Dataset:
-    """Run a model on a grid of its parameters, and find the attractor on which each point settles.
+    """Compute basins of attraction: run a model on a parameter grid and identify attractors.
 
     Parameters
     ----------
@@ -345,7 +345,7 @@ def _finish(
 
 
 def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterator[Compared]:
-    """Yield the numbers to be compared, element by element."""
+    """Yield the values to compare, element by element."""
     declared = outputs_of(flat)
     for name in names:
         values = flat[name].astype(float)

@@ -1,4 +1,4 @@
-"""Importance sampling of rare events: around design points, and from wide laws."""
+"""Importance sampling of rare events, around design points and from widened laws."""
 
 from contextlib import suppress
 from functools import partial
@@ -17,22 +17,23 @@ from uq.stats.intervals import CONFIDENCE, Ends, log_scatter_interval
 _STARTS = 8
 _ITERATIONS = 100
 _CALLS = 250  # of the model, in one search
-_SAME_WAY = 0.7  # cosine between a start and a point found: a search would find it again
+_SAME_WAY = 0.7  # cosine between a start and a known design point: skip a duplicate search
 _APART = 0.5  # standard deviations between distinct design points
 
 
 def design_points(margin: Margin, u: Floats, margins: Floats) -> Floats:
-    """Find where the limit comes closest to the origin of standard normal space.
+    """Find the design points: limit-state points closest to the origin of standard normal space.
 
     Parameters
     ----------
     margin : callable
-        Points (n, d) -> how far beyond the limit, (n,); not finite where a row has no value.
+        Points (n, d) -> distance beyond the limit, (n,); not finite where a row has no value.
     u : ndarray, shape (n, d)
         Points already computed.
     margins : ndarray, shape (n,)
-        Their margins. Up to eight searches [1]_ start from the largest in distinct directions: from
-        the origin alone a search fails on symmetric limits, or finds one of several points.
+        Their margins. Up to eight searches [1]_ start from the points with the largest margins in
+        distinct directions. A single search from the origin fails on symmetric limits, or finds
+        only one of several points.
 
     Returns
     -------
@@ -108,12 +109,12 @@ def design_points(margin: Margin, u: Floats, margins: Floats) -> Floats:
 
 
 def drawn_around(points: Floats, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Draw from normal laws around design points, with weights for the standard normal law.
+    """Draw from a mixture of normal laws at design points; return points and importance weights.
 
     Parameters
     ----------
     points : ndarray, shape (k, d)
-        Each is drawn from equally often.
+        Design points, with equal mixture weights.
     count : int
     rng : numpy.random.Generator
 
@@ -125,7 +126,7 @@ def drawn_around(points: Floats, count: int, rng: np.random.Generator) -> tuple[
     """
     centre = points[rng.integers(len(points), size=count)]
     u = centre + rng.standard_normal(centre.shape)
-    # Density of N(0, 1) over that of the mixture of N(point, 1).
+    # Ratio of the density of N(0, 1) to the mixture density of N(point, 1).
     shifts = u @ points.T - (points**2).sum(axis=1) / 2
     return u, np.exp(np.log(len(points)) - logsumexp(shifts, axis=1))
 
@@ -135,15 +136,15 @@ def _cosine(a: Floats, b: Floats) -> float:
 
 
 PLAIN = 0.25
-"""Share of rows from the inputs' own law, which bounds the weights by its inverse."""
+"""Share of rows from the input law; its inverse bounds the weights (defensive mixture)."""
 
-_OF_ONE_INPUT = 2.5  # factor of the standard deviation of one input, each row another
+_OF_ONE_INPUT = 2.5  # factor of the standard deviation of one input, which alternates between rows
 _MOST_OF_ALL = 2.5
-_ENOUGH = 20.0  # effective rows within the event, from which replicates show their scatter
+_ENOUGH = 20.0  # effective rows within the event, sufficient for the scatter of replicates
 
 
 class WideSearch(NamedTuple):
-    """Probability of the event from rows drawn wide.
+    """Importance-sampling estimate of the event probability from widened laws.
 
     Attributes
     ----------
@@ -152,7 +153,7 @@ class WideSearch(NamedTuple):
     weights : ndarray, shape (k,)
         Contribution to the probability of each row within the event.
     plain : int
-        Rows from the inputs' own law.
+        Number of rows from the input law.
     """
 
     estimates: Floats
@@ -161,7 +162,7 @@ class WideSearch(NamedTuple):
 
     @property
     def probability(self) -> float:
-        """The mean of the replicates."""
+        """Mean of the replicates."""
         return float(self.estimates.mean())
 
     @property
@@ -171,10 +172,10 @@ class WideSearch(NamedTuple):
 
     @property
     def interval(self) -> Ends:
-        """Its 95 % interval; the high end is NaN where too few rows lie within the event.
+        """95 % confidence interval of the probability.
 
-        Then the low end is that of a weighted sum of Poisson variables (Fay & Feuer, Stat. Med. 16,
-        791-801, 1997).
+        If too few rows are within the event, the high end is NaN, and the low end is the bound for
+        a weighted sum of Poisson variables (Fay & Feuer, Stat. Med. 16, 791-801, 1997).
         """
         if self.is_enough:
             return log_scatter_interval(self.estimates)
@@ -184,7 +185,7 @@ class WideSearch(NamedTuple):
         return float(share * self.weights.sum()), np.nan
 
     def hidden_high(self, plain: int) -> float:
-        """Return the 95 % upper bound of a part that none of these and further plain rows met."""
+        """Return the 95 % upper bound of a part of the event without hits in all plain rows."""
         return -log(1 - CONFIDENCE) / (self.plain + plain)
 
     @property
@@ -195,12 +196,12 @@ class WideSearch(NamedTuple):
 
 
 def is_above(wide: float, low: float, high: float) -> bool:
-    """Return whether rows drawn wide estimate more than an interval by over a standard error.
+    """Return whether a wide estimate exceeds an interval by more than one standard error.
 
     Parameters
     ----------
     wide, low : float
-        Their estimate, and the low end of its interval.
+        The wide estimate, and the low end of its interval.
     high : float
         The high end of the other interval.
     """
@@ -229,11 +230,11 @@ def wide_search(
 
     Notes
     -----
-    A quarter of the rows is plain. The others have larger standard deviations [1]_: half of them in
-    one input, each row another, by a factor of 2.5; half in all inputs, by 1 + 2/sqrt(d), at most
-    2.5, so that the weights do not degenerate in many dimensions. Rows are weighted as drawn from
-    the mixture [2]_. No trend of the margin is needed, but a part of the event that needs several
-    of many inputs at once is out of reach.
+    A quarter of the rows follows the input law. The others have larger standard deviations [1]_.
+    Half of them widen a single input, which alternates between rows, by a factor of 2.5. The other
+    half widen all inputs by 1 + 2/sqrt(d), at most 2.5, so that the weights do not degenerate in
+    high dimensions. Weights are those of a mixture density [2]_. No trend of the margin is needed,
+    but a part of the event that requires several of many inputs at once is missed.
 
     References
     ----------

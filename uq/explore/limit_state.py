@@ -1,4 +1,4 @@
-"""Limit state: the margin of rows beyond a threshold, as a function on standard normal space."""
+"""Limit-state function: distance of rows beyond a threshold, in standard normal space."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -22,7 +22,7 @@ from uq.text.element_names import place_of, places
 
 Evaluator = Callable[[Floats, NDArray[np.uint64]], Chunk]
 """``evaluator(x, seed)`` -> outputs of rows x (n, d), in declared order, with seeds (n,): the same
-bits wherever they are computed."""
+bits in any process."""
 
 
 @contextmanager
@@ -33,7 +33,7 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
     ----------
     study : Study
     output : str
-        The output that is wanted: computed alone if the model can do so.
+        The requested output: computed alone if the model supports it.
     options : RunOptions
     """
     cheap = output in study.model.cheap
@@ -55,7 +55,7 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
 
 
 class LimitState:
-    """The distance of rows beyond a threshold.
+    """Limit-state function: distance of rows beyond a threshold.
 
     Parameters
     ----------
@@ -78,9 +78,9 @@ class LimitState:
     rows : int
         Rows computed so far.
     failed : int
-        Those that failed, or were censored before the threshold.
+        Rows that failed, or were censored before the threshold.
     undefined : int
-        Those whose output was undefined.
+        Rows with an undefined output.
     failures : dict of str to str
         Status label -> message of the first row with that status.
     """
@@ -113,7 +113,7 @@ class LimitState:
         return self.physical(u)[:, [names.index(name) for name in self.study.uncertain]]
 
     def __call__(self, u: Floats) -> Floats:
-        """Compute the rows of some points.
+        """Evaluate the limit-state function at points of standard normal space.
 
         Parameters
         ----------
@@ -155,7 +155,7 @@ class LimitState:
 
 
 def find_element(study: Study, name: str) -> tuple[Output, int]:
-    """Find an output by its name or that of one of its elements; return it and the element's place.
+    """Find an output by its name or the name of an element; return it and the element index.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""New rows where the inspections point, if those of a result hardly go there."""
+"""New rows in the posterior region, if a result has too few rows there."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ def with_given_rows(study: Study, scores: Floats, name: str, seed: int) -> Study
     name : str
         Of the new study, in messages.
     seed : int
-        From which rows of a random model have theirs.
+        Seed of the study, from which the seeds of rows of a random model derive.
     """
     names = study.model.parameter_names
     x = physical(study, special.ndtr(scores))
@@ -73,13 +73,13 @@ def with_given_rows(study: Study, scores: Floats, name: str, seed: int) -> Study
 
 
 def _within(values: Floats) -> dict[str, Any]:
-    """Return a law for a column of a multiple of another input, which has none of its own."""
+    """Return a bounding law for values of an input that is a multiple of another input."""
     low, high = float(values.min()), float(values.max())
     return {"distribution": "uniform", "lower": low, "upper": max(high, np.nextafter(low, np.inf))}
 
 
 ENOUGH = 400.0
-"""Effective rows after which no more are drawn."""
+"""Effective sample size at which sampling stops."""
 
 _SHARE = 4
 _FEWEST = 100
@@ -88,7 +88,7 @@ _SEED = 23
 
 @dataclass(frozen=True)
 class Budget:
-    """New rows that may be computed.
+    """Budget of new rows.
 
     Attributes
     ----------
@@ -114,14 +114,14 @@ def enlarged(
     model_cv: float,
     budget: Budget,
 ) -> tuple[Result, Posterior, list[Path]]:
-    """Draw new rows, in rounds, until they represent what the inspections leave.
+    """Draw new rows in rounds until they represent the posterior.
 
     Parameters
     ----------
     study_rows : Result
         A result.
     updated : Posterior
-        What the inspections leave of it.
+        The posterior of its rows.
     inspections : sequence of Inspection
     model_cv : float
     budget : Budget
@@ -129,7 +129,7 @@ def enlarged(
     Returns
     -------
     rows : Result
-        With the new ones.
+        The rows including new ones.
     updated : Posterior
     kept : list of Path
         Files of the new rows, no longer needed once the posterior is written.
@@ -143,15 +143,14 @@ def enlarged(
 
     Notes
     -----
-    Adaptive importance sampling in independent repetitions, whose scatter gives the intervals of
-    all that is read from the rows. Each begins with its part of the rows (`repetitions_of`) and
-    draws its part of each round from a mixture of Student laws around its own rows so far, weighted
-    with as much of the likelihood as they bear. A row of any round counts by the density of the
-    laws over that of the mixture of all that its repetition has drawn [1]_. Once these rows
-    represent what the inspections leave, they are dropped: further rounds come from a last mixture
-    around them, and count by the density over that of this mixture and the laws. The likelihood
-    may jump. An integrated input keeps its law. Of several units, the mixture is that around the
-    rows of each.
+    Adaptive importance sampling in independent repetitions, whose scatter gives all confidence
+    intervals. Each repetition starts with its part of the rows (`repetitions_of`). In each round it
+    draws its part from a mixture of Student laws around its previous rows, with tempered weights. A
+    row of any round has as weight the prior density over the mixture of all proposals of its
+    repetition [1]_. Once these rows represent the posterior, they are dropped: further rounds are
+    drawn from a final mixture around them, with weights against this mixture and the prior. The
+    likelihood may be discontinuous. An integrated input keeps its law. With several inspected
+    units, the mixture covers the rows of each.
 
     References
     ----------
@@ -170,7 +169,7 @@ class _Rounds:
     Attributes
     ----------
     repetitions : list of Repetition
-        That begin with the rows of the study.
+        Repetitions that start with the rows of the study.
     kept : list of Path
         Files of the rounds so far.
     """
@@ -200,7 +199,7 @@ class _Rounds:
     def until_enough(
         self, repetitions: Sequence[Repetition], rows: Result, updated: Posterior
     ) -> tuple[Result, Posterior]:
-        """Add rounds to the rows of the study until they represent what the inspections leave."""
+        """Add rounds to the rows of the study until they represent the posterior."""
         rounds, repetition_of, why = list[xr.Dataset](), repetitions_of(rows), distrust(updated)
         while why or min(weights.effective for weights in updated.weights) < ENOUGH:
             if (self._number + 1) * self._each > self._budget.rows:
@@ -230,7 +229,7 @@ class _Rounds:
     def settled(
         self, repetitions: Sequence[Repetition], rows: Result, updated: Posterior
     ) -> list[Repetition]:
-        """Return repetitions that draw around the rows of these, and drop them."""
+        """Return repetitions with a final proposal around the rows so far, without these rows."""
         columns, count = _columns(self._study, updated), len(repetitions)
         log_likelihoods = _log_likelihoods(updated, rows.dataset["replicate"].values, count)
         return Repetition.settled(repetitions, log_likelihoods, columns, self._rng(count))
@@ -239,7 +238,7 @@ class _Rounds:
         return np.random.default_rng((self._study.design.seed, _SEED, self._number, part))
 
     def _computed(self, scores: Floats) -> xr.Dataset:
-        """Return the next round, kept beside the result until that is complete."""
+        """Compute the next round; its rows are kept beside the result until it is complete."""
         self._number += 1
         number, output = self._number, self._budget.output
         path = output and output.with_name(f"{output.stem}-{self._name}-round-{number}.nc")
@@ -286,7 +285,7 @@ def _study_of(study_rows: Result, updated: Posterior, model: str | None) -> Stud
 
 
 def _columns(study: Study, updated: Posterior) -> NDArray[np.intp]:
-    """Return the inputs to draw from a law of their own: all but the integrated one."""
+    """Return the inputs drawn from the proposal: all but the integrated one."""
     integrated = updated.scale.name if updated.scale else ""
     names = list(study.uncertain)
     return np.array([i for i, name in enumerate(names) if name != integrated], dtype=np.intp)
@@ -295,9 +294,9 @@ def _columns(study: Study, updated: Posterior) -> NDArray[np.intp]:
 def _log_likelihoods(
     updated: Posterior, repetition_of: NDArray[np.integer], count: int
 ) -> list[list[Floats]]:
-    """Return of each repetition the log likelihood of its rows as each inspected unit.
+    """Return the log-likelihood of the rows of each repetition, for each inspected unit.
 
-    Given all other inspections.
+    The likelihood is conditional on all other inspections.
     """
     of_units = updated.likelihoods
     evidence, log_likelihoods = on_wide_grids(updated.evidence, of_units), []
@@ -312,7 +311,7 @@ def _log_likelihoods(
 
 
 def _digest(study_rows: Result, inspections: Sequence[Inspection], model_cv: float) -> str:
-    """Return a short digest of everything that new rows depend on."""
+    """Return a short digest of all inputs that determine the new rows."""
     asked = [digest(inspection) for inspection in inspections]
     key = repr(
         (study_rows.dataset.attrs["study_identity"], len(study_rows), asked, float(model_cv))

@@ -1,4 +1,4 @@
-"""Caveats of the probability of a rare event: sentences that its numbers do not show."""
+"""Caveats of a rare-event probability that its numbers do not show."""
 
 import numpy as np
 import xarray as xr
@@ -25,7 +25,7 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
     margin : LimitState
         With the rows that failed or have no output.
     factor : float
-        Between the largest and smallest estimate of replicates, 1 where chains explain it.
+        Ratio of largest to smallest replicate estimate, 1 if chain correlation explains it.
     """
     notes = []
     estimates, most = ds["estimate"].values, float(ds["high"])

@@ -27,7 +27,7 @@ from uq.study.definition import Study
 
 _FEWEST = 100  # rows of a level: 10 chains
 REACHED = "of the part that the method reaches"
-"""Whose probability an interval holds, unless plain rows or rows drawn wide give it."""
+"""Scope of an interval, unless it is based on plain rows or widened laws."""
 
 
 class _Outcome(NamedTuple):
@@ -47,7 +47,7 @@ class _Outcome(NamedTuple):
     disagreement : float
         See `uq.explore.subset_simulation.disagreement`.
     variables : dict
-        Of the result, which this method alone gives.
+        Variables of the result specific to this method.
     """
 
     estimates: Floats
@@ -85,8 +85,8 @@ def rare_event(
     method : {"subset", "importance"}
         Subset simulation follows the output towards the event from every side. It assumes that the
         output rises towards every part of the event, without a jump. Importance sampling around the
-        design points of FORM takes far fewer rows if the output is smooth, and misses any part of
-        the event away from the design points that were found.
+        design points of FORM requires far fewer rows if the output is smooth, but misses any part
+        of the event away from the design points found.
     samples : int
         Rows of each level (subset), or around the design points (importance), of each replicate.
     replicates : int
@@ -125,12 +125,13 @@ def rare_event(
     rows support (`uq.explore.subset_simulation.subset_interval`): for 8000 independent rows
     without a hit, 4.6e-4.
 
-    Both methods can miss a part of the event, subset simulation one behind a jump of the output.
-    As many rows as a level has are therefore drawn wide (`uq.explore.importance_sampling`).
-    If their interval lies above that of the method, it is shown instead; if only their estimate
-    does, and enough of them lie within the event, the high end is theirs, and a note says so. If
-    replicates of subset simulation scatter more than their chains explain, the high end is what the
-    plain rows support, and the low end lies about their geometric mean.
+    Both methods can miss a part of the event; subset simulation misses a part behind a jump of the
+    output. As a check, as many rows as in a level are drawn from widened laws
+    (`uq.explore.importance_sampling`). If their interval is above that of the method, it replaces
+    the latter. If only their estimate is above, and enough rows are within the event, their high
+    end is used, with a note. If replicates of subset simulation scatter more than chain correlation
+    explains, the high end is the upper bound from plain rows, and the low end is centred on the
+    geometric mean of the replicates.
 
     Examples
     --------
@@ -200,7 +201,7 @@ def rare_event(
 
 
 def estimate_of(outcome: _Outcome, wide: WideSearch | None) -> tuple[float, tuple[float, float]]:
-    """Return the probability and its interval, from rows drawn wide if a method missed a part.
+    """Return the probability and its interval, from widened laws if a method missed a part.
 
     Parameters
     ----------
@@ -222,7 +223,7 @@ def estimate_of(outcome: _Outcome, wide: WideSearch | None) -> tuple[float, tupl
     probability = float(outcome.estimates.mean())
     low, high = map(float, outcome.interval)
     if outcome.disagreement > 1:
-        # A replicate that enters a part by luck carries the mean, not the geometric mean.
+        # One replicate that enters a part by chance dominates the mean, not the geometric mean.
         low *= float(np.exp(np.log(outcome.estimates).mean())) / probability
         high = max(high, outcome.supported)
     if wide is not None and wide.is_enough and is_above(wide.probability, wide.interval[0], high):
@@ -231,7 +232,7 @@ def estimate_of(outcome: _Outcome, wide: WideSearch | None) -> tuple[float, tupl
 
 
 def _is_missed(outcome: _Outcome, wide: WideSearch) -> bool:
-    """Return whether rows drawn wide show a part of the event that a method missed."""
+    """Return whether widened laws reveal a part of the event that a method missed."""
     reached = bool((outcome.estimates > 0).all())
     return wide.interval[0] > outcome.interval[1] or (wide.is_enough and not reached)
 

@@ -1,4 +1,4 @@
-"""Single rows: of a model without a study, or of a result, computed again."""
+"""Single rows: a single run of a model, or a recomputed row of a result."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -28,7 +28,7 @@ from uq.result.row_choice import Choice, lowest_row, near_quantile_row, place_of
 from uq.study.installed_models import model_at
 
 MOST_SHOWN = 6
-"""Quantities in a picture of a motion."""
+"""Maximum number of quantities in the figure of a time history."""
 
 
 def simulate(
@@ -75,7 +75,7 @@ def simulate(
 
 
 def dataset(row: Row, trajectory: bool = True) -> xr.Dataset:
-    """Return a row as `simulate` does."""
+    """Return a row as the Dataset of `simulate`."""
     ds = result_file.build_rows(
         row.model, row.settings, row.values, row.columns, row.status, row.failures
     )
@@ -90,7 +90,7 @@ def with_trajectory(ds: xr.Dataset, row: Row) -> xr.Dataset:
 
 
 def holds_trajectory(path: Path) -> bool:
-    """Return whether a file is a netCDF file of what `simulate` returns with a trajectory."""
+    """Return whether a file is a netCDF file from `simulate` with a trajectory."""
     try:
         refuse_tricks(path)
         with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as ds:
@@ -126,12 +126,12 @@ def _trajectory(row: Row) -> xr.DataArray:
 
 
 PLACES = ("world", "unit", "repeat", "replicate", "group", "block")
-"""Variables that give the place of a row in its design."""
+"""Variables with the design indices of a row."""
 
 
 @dataclass(frozen=True)
 class RowAgain:
-    """A row of a result, and the same computed again here.
+    """A stored row of a result and its recomputation.
 
     Attributes
     ----------
@@ -141,15 +141,15 @@ class RowAgain:
     row : Row
         The same as plain numbers.
     again : Row or None
-        None where it cannot be computed again.
+        None if it cannot be recomputed.
     differing : list of str
-        The variables that differ by a bit.
+        The variables that are not bitwise equal.
     reason : str
-        Why it is not equal; "" if it is.
+        Why the rows are not equal; "" if they are.
     versions : dict of str to tuple of str
-        What differs here from what made the result: name -> (there, here).
+        Versions that differ from those that made the result: name -> (there, here).
     choice : Choice, optional
-        Why this row.
+        The selection of this row.
     """
 
     number: int
@@ -168,7 +168,7 @@ class RowAgain:
 
     @property
     def place(self) -> dict[str, int | str]:
-        """Its place in the design, by name; of the block its label."""
+        """Design indices of the row, by name; for the block its label."""
         stored = self.stored
         indices: dict[str, int | str] = {
             name: int(stored.dataset[name][0]) for name in PLACES if name in stored.dataset

@@ -1,7 +1,8 @@
-"""Subset simulation: a rare event as a chain of likely events, all replicates at once.
+"""Subset simulation: a rare event as a sequence of likely conditional events.
 
-Our own, because OpenTURNS 1.27 asks for a hundred rows at a time, one replicate after the other,
-and ends one run in a few dozen with "The variance estimate must be >= 0".
+All replicates run together. OpenTURNS 1.27 is not used: it requests a hundred rows at a time, one
+replicate after the other, and one run in a few dozen ends with the error "The variance estimate
+must be >= 0".
 """
 
 from collections.abc import Callable, Generator
@@ -21,11 +22,11 @@ LEVEL_SHARE = 0.1
 """Share of a level's rows from which the next level grows."""
 
 SMALLEST = 1e-12
-"""A probability below which a replicate gives up."""
+"""Probability below which a replicate stops."""
 
 _ACCEPTED = 0.44  # share of accepted moves at which chains mix fastest
 _FIRST_STEP = 0.6
-_CORRELATION = 3.0  # of the rows of a level: their number over that of independent ones, less 1
+_CORRELATION = 3.0  # autocorrelation factor gamma of a level: n / effective sample size - 1
 
 
 class SubsetReplicate(NamedTuple):
@@ -80,11 +81,11 @@ def subset_simulation(
     -----
     Levels as in [1]_; chains move by conditional sampling with a step adapted to the share of
     accepted moves [2]_. A margin with its own random numbers, drawn afresh in each call, is sampled
-    correctly too: they are part of the state and proposed independently. Levels respect ties: if so
-    many rows share the lowest value that a level would contain them all, it is what lies strictly
-    above that value. A replicate ends within the event; or on a plateau, where no row lies above
-    the others; or at a level less likely than `SMALLEST`. There is no budget: a level that does not
-    rise ends the replicate, and each that rises leaves rows behind.
+    correctly too: they are part of the state and proposed independently. Levels handle ties: if so
+    many rows share the lowest value that a level would contain all rows, the level contains only
+    rows strictly above that value. A replicate ends within the event, on a plateau where no row
+    exceeds the others, or at a level less likely than `SMALLEST`. A budget is not required: a level
+    that does not rise ends the replicate, and each rising level excludes rows.
 
     References
     ----------
@@ -143,7 +144,7 @@ def _walk(
 
 
 def disagreement(replicates: list[SubsetReplicate], samples: int) -> float:
-    """Return the factor between the largest and smallest estimate where chains do not explain it.
+    """Return the ratio of largest to smallest estimate, if chain correlation does not explain it.
 
     Parameters
     ----------
@@ -154,9 +155,9 @@ def disagreement(replicates: list[SubsetReplicate], samples: int) -> float:
     Returns
     -------
     float
-        1 where the scatter is at most twice as large as Au and Beck's for chains of correlated
-        rows, or some replicate did not reach the event. Larger, rows entered the event from far
-        outside: a part of it has no trend that leads there.
+        1 if the scatter is at most twice the value of Au and Beck for correlated chains, or if a
+        replicate did not reach the event. A larger ratio means that rows entered the event from far
+        outside: the output has no trend towards a part of it.
     """
     estimates = np.array([replicate.probability for replicate in replicates])
     if len(replicates) < 2 or not (estimates > 0).all():
@@ -168,7 +169,7 @@ def disagreement(replicates: list[SubsetReplicate], samples: int) -> float:
 
 
 def subset_interval(replicates: list[SubsetReplicate], samples: int) -> Ends:
-    """Return the interval that replicates of subset simulation support.
+    """Return the confidence interval from replicates of subset simulation.
 
     Parameters
     ----------
@@ -179,11 +180,12 @@ def subset_interval(replicates: list[SubsetReplicate], samples: int) -> Ends:
     Returns
     -------
     low, high : float
-        If every replicate reached the event: from their scatter or, if all ended at the first
-        level, whose rows are independent, that of a share of these rows. Otherwise from zero, or a
-        higher end that the scatter supports, to the lesser of two upper bounds. One is that of the
-        share of the first level's rows. The other gives each replicate that never reached the event
-        the probability of its last level, of which the event is a part.
+        If every replicate reached the event: from their scatter or, if all ended at the first level
+        with its independent rows, the interval of a proportion. Otherwise the low end is zero, or
+        higher if the scatter supports it, and the high end is the smaller of two upper bounds. The
+        first is the bound of a proportion in the rows of the first level. The second assigns to
+        each replicate that did not reach the event the probability of its last level, of which the
+        event is a subset.
     """
     estimates = np.array([replicate.probability for replicate in replicates])
     rows = samples * len(replicates)

@@ -38,7 +38,7 @@ def update(
     scheduler: str | None = None,
     model: str | None = None,
 ) -> xr.Dataset:
-    """Update a study or a result with what was measured.
+    """Update a study or a result with inspections (Bayesian inference).
 
     Parameters
     ----------
@@ -56,9 +56,8 @@ def update(
         Number of rows: of a study, instead of its own; of a result, new ones that may be computed
         if its own cannot represent the posterior (`uq.explore.new_rows.enlarged`).
     model_error : float, optional
-        Coefficient of variation of reality about the model: lognormal beside ``cv`` and detection
-        curves, normal beside ``sd`` and exact limits; default 0, or that of the result if it has
-        been updated before.
+        Coefficient of variation of the model error: lognormal with ``cv`` and detection curves,
+        normal with ``sd`` and exact limits; default 0, or the value of an earlier update.
     workers, scheduler
         As in `uq.run`.
     model : str, optional
@@ -75,15 +74,15 @@ def update(
     InputError
         One line for each mistake in the inspections; when a measurement has been used before.
     RunError
-        When the rows cannot represent what the inspections leave; says how many could.
+        When the rows cannot represent the posterior; the message states the required number.
 
     Notes
     -----
-    A sample is a world: what its units share. Each inspected unit takes units of its own of each
-    sample; the mean of their likelihoods estimates that of the unit without bias, and the product
-    over units weights the world [1]_. An input that only scales lives is integrated instead of
-    drawn. Weights are Pareto-smoothed [2]_. Outputs other than lives are taken not to depend on an
-    input that scales lives.
+    A sample is a world: one draw of the shared inputs. Each inspected unit uses separate units of
+    each sample. The mean of their likelihoods is an unbiased estimate of the likelihood of the
+    unit, and the product over units is the weight of the world [1]_. An input that only scales
+    lives is integrated instead of sampled. Weights are Pareto-smoothed [2]_. Outputs other than
+    lives are assumed not to depend on an input that scales lives.
 
     References
     ----------
@@ -127,12 +126,12 @@ def prior(
 
 
 def is_study(path: str | Path) -> bool:
-    """Whether a path is that of a study, not of a result."""
+    """Whether a path is the file of a study, not of a result."""
     return Path(path).suffix.lower() == ".toml"
 
 
 def samples_for(study: Study, rows: int) -> int:
-    """Return the number of samples that give a study at least so many rows."""
+    """Return the smallest number of samples for a study with at least `rows` rows."""
     return ceil(rows / rows_per_sample(study))
 
 
@@ -143,7 +142,7 @@ def learn(
     model_error: float | None,
     budget: Budget | None = None,
 ) -> xr.Dataset:
-    """Return a result as the inspections leave it, and write it."""
+    """Return the posterior of a result as a result, and write it."""
     if why := opened.why_no_statistics:
         raise InputError(f"uq update: the rows of a '{opened.design_name}' design {why}")
     if output is not None and Path(output).is_file():
@@ -173,7 +172,7 @@ def learn(
 
 
 def _check_that_it_is_a_posterior(path: Path) -> None:
-    """Refuse to overwrite rows that a run computed: only they can be extended and verified."""
+    """Refuse to overwrite a computed result: only it can be extended and verified."""
     remedy = "choose another output"
     if not has_weights(open_result(path, remedy)):
         raise InputError(f"{path}: has rows that no inspections have weighted; {remedy}")

@@ -1,4 +1,4 @@
-"""Work that can be stopped at any moment without leaving anything behind."""
+"""Clean-up of interrupted work: no temporary files or processes remain."""
 
 import threading
 from collections.abc import Callable, Iterator

@@ -56,7 +56,7 @@ class Journal:
 
 
 def read(path: Path) -> list[Record]:
-    """Return the sound records of a journal, which may be being written; none without a file."""
+    """Return the valid records of a journal, also during writing; empty without a file."""
     try:
         lines = path.read_bytes().split(b"\n")
     except FileNotFoundError:

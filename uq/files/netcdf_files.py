@@ -1,7 +1,7 @@
-"""NetCDF files from anyone: examined before they are opened, and sealed with a checksum.
+"""NetCDF files from untrusted sources: validated before opening, sealed with a checksum.
 
-An HDF5 file can store data in other files, link to them and to itself, and claim more than it
-holds. Whoever opens it follows all that. Here its objects are listed with the low-level functions
+An HDF5 file can store data in other files, link to them and to itself, and declare more data than
+it contains. Opening it follows all links. Here its objects are listed with the low-level functions
 of the HDF5 library that netCDF4 has loaded; nothing is followed and no value is read.
 """
 
@@ -37,7 +37,8 @@ _BASIC_AND_COUNT = 5
 def most_bytes(path: Path) -> int:
     """Return the largest size allowed for the values of a file [bytes], from its space on the disk.
 
-    A sparse file has less than its size. File systems that report no space are taken at the size.
+    A sparse file occupies less space than its size. If the file system reports no space, the size
+    is used.
     """
     status = path.stat()
     allocated = min(status.st_blocks * 512 or status.st_size, status.st_size)
@@ -45,7 +46,7 @@ def most_bytes(path: Path) -> int:
 
 
 def refuse_tricks(path: Path) -> None:
-    """Refuse a netCDF file that does more than to hold variables at its root.
+    """Refuse a netCDF file with anything other than variables at its root.
 
     Parameters
     ----------
@@ -201,7 +202,7 @@ def _values(library: Any, owner: int, prefix: str, label: str, most: int) -> tup
 
 
 def _size_of(library: Any, dataset: int, label: str, most: int) -> int:
-    """Return the size that a variable claims [bytes]; refuse one that is not in the file."""
+    """Return the declared size of a variable [bytes]; refuse data outside the file."""
     with _closing(library.H5Dget_create_plist(dataset), library.H5Pclose) as how:
         layout = library.H5Pget_layout(how)
         if layout == _VIRTUAL or library.H5Pget_external_count(how) != 0:

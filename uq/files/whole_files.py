@@ -37,7 +37,7 @@ def node(path: Path) -> str:
     except OSError as error:
         if error.errno == ENAMETOOLONG:
             return _TOO_LONG
-        # a circular link does not exist for whoever follows it
+        # a circular link does not exist when followed
         return "a link that leads nowhere" if Path(os.path.realpath(path)).is_symlink() else ""
     return "" if kind == stat.S_IFREG else _KINDS[kind]
 
@@ -92,7 +92,7 @@ def file_behind(path: Path, option: str = "-o") -> Path:
 
 
 def cache_path(name: str) -> Path:
-    """Return the user's cache folder of a program; where there is none, a place never writable.
+    """Return the user's cache folder of a program; an unwritable path if there is none.
 
     Without HOME and an entry among the users, the home folder is unknown, or a relative ``~``.
     """
@@ -232,7 +232,7 @@ def nearest_folder(path: Path) -> Path:
 
 
 def reason(error: Exception, path: Path) -> str:
-    """Say why a write failed: HDF5 reports a full disk or a quota as "HDF error"."""
+    """Return why a write failed: HDF5 reports a full disk or a quota as "HDF error"."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     free = shutil.disk_usage(nearest_folder(path)).free

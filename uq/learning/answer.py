@@ -42,13 +42,13 @@ class Learnt:
     ----------
     inspections : list of Inspection
     worst : Smoothed
-        The worst weights: of rows as inspected units, or as units never inspected.
+        The least reliable weights, among all inspected units and the units never inspected.
     inputs : list of InputLearnt
     confounded : list of Confounded
     lives : list of Remaining
     taught : list of Taught
     strangeness : float
-        Probability, before the inspections, of inspections at least as improbable.
+        Prior-predictive p-value of the inspections (Box 1980).
     notes : list of str
         Warnings.
     """
@@ -70,7 +70,7 @@ def learnt(result: AnyResult, by: Sequence[float] = ()) -> Learnt:
     ----------
     result : Result, xarray.Dataset or path
     by : sequence of float
-        Times from the beginning of a life, in its unit: the probability that it has ended by each.
+        Times from the start of a life, in its unit, at which to estimate the failure probability.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def _warnings(strange: float) -> Iterator[str]:
 
 
 def _alike(labels: Sequence[str]) -> Iterator[str]:
-    """Yield which units may be one, written in two ways."""
+    """Yield a warning for each pair of labels that may denote the same unit."""
     seen: dict[str, str] = {}
     for label in labels:
         letters = "".join(normalize("NFKC", label).casefold().split())
@@ -121,7 +121,7 @@ def _alike(labels: Sequence[str]) -> Iterator[str]:
 
 
 def _interpolated(updated: Posterior) -> Iterator[str]:
-    """Yield how well depths are known between those whose lives the result has."""
+    """Yield warnings on the accuracy of depths interpolated between the tabulated ones."""
     observables = updated.likelihoods.observables.values()
     for observable in {observable.name: observable for observable in observables}.values():
         errors = observable.depths.error() if observable.depths is not None else np.empty(0)
@@ -134,7 +134,7 @@ def _interpolated(updated: Posterior) -> Iterator[str]:
 
 
 def learnt_facts(summary: Learnt) -> Fact:
-    """Return the numbers of a posterior.
+    """Return the summary of a posterior as a tree of facts.
 
     Returns
     -------
@@ -142,13 +142,13 @@ def learnt_facts(summary: Learnt) -> Fact:
         ``effective_rows``, ``pareto_k``; ``inputs``: name -> ``prior`` and ``posterior``, each with
         ``mean``, ``sd`` (of the posterior with intervals, ``mean_low``, ..., and ``mean_reason``
         where it is missing) and ``quantiles``; of a unit as ``NAME[unit=LABEL]``; ``confounded``:
-        pairs with their rank correlation; ``taught``: of each inspection the ``bits`` that it adds
-        to all others; ``strangeness``: the probability, before them, of inspections at least as
-        strange; ``notes``; ``units``: label -> life -> ``units`` (of all
+        pairs with their rank correlation; ``taught``: the information gain of each inspection in
+        ``bits``, given all others; ``strangeness``: prior-predictive p-value of the inspections;
+        ``notes``; ``units``: label -> life -> ``units`` (of all
         times), ``seen`` (when it was last seen running), ``runs``, ``remaining`` (quantiles from
-        then on), ``by`` (probability to have ended by a time), ``effective_rows``; ``uninspected``:
-        the same of units never inspected, with ``over_shared`` beside a probability, where known:
-        its 2.5 and 97.5 % points over what units share.
+        then on), ``by`` (probability of failure by a time), ``effective_rows``; ``uninspected``:
+        the same for units never inspected, with ``over_shared`` beside a probability, where
+        available: its 2.5 and 97.5 % quantiles over the shared inputs.
     """
     fact = partial(Fact, notes=tuple(summary.notes))
 

@@ -1,8 +1,8 @@
-"""Evidence of inspections for worlds, for an input that scales lives in them, and for units.
+"""Marginal likelihood of the inspections, by world, unit and value of the integrated input.
 
-A world is what all units share: a sample, or all rows where nothing is shared but the integrated
-input. Each inspected unit takes rows of its own in each world, so that the product over units of
-the means of their likelihoods estimates the evidence of a world without bias.
+A world is one draw of the inputs that all units share: a sample, or all rows if units share at most
+the integrated input. Each inspected unit uses separate rows in each world. The product over units
+of their mean likelihoods is therefore an unbiased estimate of the evidence of a world.
 """
 
 from collections.abc import Sequence
@@ -18,27 +18,27 @@ from uq.learning.integrated_input import IntegratedScale
 from uq.learning.unit_likelihood import UnitLikelihoods
 
 FINEST = 1e-9
-"""Share of the posterior that the grid of the integrated input may leave out on each side."""
+"""Largest posterior probability that the grid of the integrated input omits in each tail."""
 
 _NODES = 64
 _MOST_NODES = 512
 _FINE = 8.0
-"""Nodes that share the law of the integrated input in a row, at least."""
+"""Minimum effective number of grid nodes in the law of the integrated input of a row."""
 
 _MET = 2.0
-"""Fewer leave out rows."""
+"""With fewer effective nodes than this, rows are missed."""
 
 _FAR = 7.5
 _PASSES = 8
 
 
 class QuadratureGrid(NamedTuple):
-    """Values of an integrated input, evenly spread in probability, and in the tails in score.
+    """Quadrature nodes of an integrated input, even in probability, in the tails in normal score.
 
     Attributes
     ----------
     edges : ndarray, shape (g + 1,)
-        The prior probabilities between which each value lies.
+        Prior probabilities at the edges of the cells.
     values : ndarray, shape (g,)
     log_share : ndarray, shape (g,)
         Logarithm of the prior probability of each value.
@@ -50,18 +50,18 @@ class QuadratureGrid(NamedTuple):
 
     @property
     def low(self) -> float:
-        """The lower end, a prior probability."""
+        """Prior probability at the lower end."""
         return float(self.edges[0])
 
     @property
     def high(self) -> float:
-        """The upper end."""
+        """Prior probability at the upper end."""
         return float(self.edges[-1])
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Posterior of worlds, and of the integrated input in them, with the log evidence.
+    """Posterior of the worlds and of the integrated input in each, with the log evidence.
 
     Attributes
     ----------
@@ -77,7 +77,8 @@ class Evidence:
     grids : tuple of QuadratureGrid
         Of each inspected unit.
     nodes : float
-        How many values share the law of an integrated input in a row, in the unit of the fewest.
+        Effective number of nodes in the law of the integrated input of a row, for the unit with
+        the fewest.
     """
 
     log_worlds: Floats
@@ -102,7 +103,7 @@ def weigh(likelihoods: UnitLikelihoods) -> Evidence:
         if likelihoods.shares_scale:
             narrower = narrower[:1] * len(grids)
         if evidence.nodes < _MET and nodes < _MOST_NODES:
-            # Values that no row has met may be possible: finer before narrower.
+            # Nodes that no row resolves may still be possible: refine before narrowing.
             narrower, nodes = [(grid.low, grid.high) for grid in grids], nodes * 2
         elif not any(_is_half(*both) for both in zip(narrower, grids, strict=True)):
             if nodes == _MOST_NODES or evidence.nodes >= _FINE:
@@ -113,7 +114,7 @@ def weigh(likelihoods: UnitLikelihoods) -> Evidence:
 
 
 def on_wide_grids(evidence: Evidence, likelihoods: UnitLikelihoods) -> Evidence:
-    """Return the evidence on grids from end to end of the prior, as fine as those it has inside."""
+    """Return the evidence on grids over the full prior, as fine as the given grids."""
     grids, scale = evidence.grids, likelihoods.scale
     if scale is not None:
         grids = tuple(
@@ -131,7 +132,7 @@ def on_wide_grids(evidence: Evidence, likelihoods: UnitLikelihoods) -> Evidence:
 
 
 def weigh_on(grids: Sequence[QuadratureGrid], likelihoods: UnitLikelihoods) -> Evidence:
-    """Return the evidence on given grids, one of each inspected unit."""
+    """Return the evidence on given grids, one per inspected unit."""
     worlds, log_units, nodes = likelihoods.worlds, [], []
     for unit, (grid, block) in enumerate(zip(grids, likelihoods.blocks, strict=True)):
         log_rows = likelihoods.log_likelihood(unit, grid.values)
@@ -170,18 +171,18 @@ def _grid(low: float, high: float, scale: IntegratedScale | None, nodes: int) ->
 
 
 def _scores(low: float, high: float) -> Floats:
-    """Return normal scores of probabilities, finite."""
+    """Return normal scores of probabilities, limited to finite values."""
     return np.asarray(special.ndtri(np.array([low, high])).clip(-_FAR, _FAR))
 
 
 def _joined(parts: Sequence[Floats], scale: IntegratedScale) -> QuadratureGrid:
-    """Return the grid whose values lie between some probabilities."""
+    """Return the grid whose cells have the given edges, as prior probabilities."""
     edges = np.unique(np.concatenate(parts))
     return QuadratureGrid(edges, scale.quantiles(centres(edges)), np.log(np.diff(edges)))
 
 
 def centres(edges: Floats) -> Floats:
-    """Return the probabilities of the mean normal score between some probabilities."""
+    """Return the centre of each cell: the probability at its mean normal score."""
     scores = special.ndtri(edges)
     width, middle = np.diff(scores), (scores[1:] + scores[:-1]) / 2
     with np.errstate(invalid="ignore"):
@@ -195,7 +196,7 @@ def centres(edges: Floats) -> Floats:
 def _with_all_but_each(
     log_units: Sequence[Floats], log_share: Floats, worlds: int
 ) -> tuple[Floats, Floats]:
-    """Return logarithms of products with the prior, of all units and of all but each."""
+    """Return the log posterior (unnormalised) of all units, and with each unit left out."""
     impossible = np.isneginf(log_units)
     finite = np.where(impossible, 0.0, log_units)
     count, total = impossible.sum(axis=0), finite.sum(axis=0) + log_share - np.log(worlds)
@@ -204,7 +205,7 @@ def _with_all_but_each(
 
 
 def _narrower(grid: QuadratureGrid, log_unit: Floats, rest: Floats) -> tuple[float, float]:
-    """Return the part of the grid, one node wider on each side, with nearly all probability."""
+    """Return the range of the grid with nearly all probability, widened by one node each side."""
     share = special.logsumexp(log_unit + rest, axis=0)
     share = np.exp(share - special.logsumexp(share))
     below, above = np.cumsum(share), np.cumsum(share[::-1])
@@ -214,7 +215,7 @@ def _narrower(grid: QuadratureGrid, log_unit: Floats, rest: Floats) -> tuple[flo
 
 
 def _is_half(ends: tuple[float, float], grid: QuadratureGrid) -> bool:
-    """Return whether the part is half the grid or less: its middle, or its tails."""
+    """Return whether the range is at most half the grid, in probability or in normal score."""
     middle = ends[1] - ends[0] <= 0.5 * (grid.high - grid.low)
     return middle or bool(np.ptp(_scores(*ends)) <= 0.5 * np.ptp(_scores(grid.low, grid.high)))
 
@@ -222,9 +223,10 @@ def _is_half(ends: tuple[float, float], grid: QuadratureGrid) -> bool:
 def _mean_likelihood(
     log_likelihood: Floats, world: NDArray[np.intp], worlds: int, log_share: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the logarithm of the mean over the rows of each world, shape (worlds, g).
+    """Return the log of the mean likelihood over the rows of each world, shape (worlds, g).
 
-    With it how many nodes share the law of the integrated input in a row of each, shape (worlds,).
+    Also return the effective number of nodes in the law of the integrated input in a row of each
+    world, shape (worlds,).
     """
     order = np.argsort(world, kind="stable")
     occupied, first = np.unique(world[order], return_index=True)

@@ -1,4 +1,4 @@
-"""Rows not drawn from the laws of the study, and how much they count before any inspection."""
+"""Importance weights of rows that were not drawn from the laws of the study."""
 
 from collections.abc import Sequence
 
@@ -15,19 +15,20 @@ REPETITIONS = 8
 
 
 def importance_of(rows: Result) -> Floats:
-    """Return the importance weight of each row before any inspection, shape (n,)."""
+    """Return the prior importance weight of each row, shape (n,)."""
     return rows.dataset[IMPORTANCE].values if rows.has_rounds else np.ones(len(rows))
 
 
 def from_study(rows: Result) -> Mask:
-    """Return which rows were drawn from the laws of the study, shape (n,)."""
+    """Return the mask of rows drawn from the laws of the study, shape (n,)."""
     return rows.dataset[ROUND].values == 0 if rows.has_rounds else np.ones(len(rows), dtype=bool)
 
 
 def repetitions_of(rows: Result) -> NDArray[np.int32]:
-    """Return the repetition of the sampler that begins with each row of a result, shape (n,).
+    """Return the sampler repetition to which each initial row is assigned, shape (n,).
 
-    The replicate of a design that has several, else an eighth of the samples.
+    A repetition starts from one replicate of a replicated design, else from an eighth of the
+    samples.
     """
     if int(rows.dataset.attrs["replicates"]) > 1:
         return np.asarray(rows.dataset["replicate"].values)
@@ -35,7 +36,7 @@ def repetitions_of(rows: Result) -> NDArray[np.int32]:
 
 
 def own_rows(rows: Result) -> Result:
-    """Return the rows drawn from the laws of the study alone, as they were."""
+    """Return only the rows drawn from the laws of the study, without weights of new rounds."""
     if not rows.has_rounds:
         return rows
     study_rows = rows.take(from_study(rows)).dataset.drop_vars([IMPORTANCE, ROUND])
@@ -55,7 +56,7 @@ def with_rounds(
     log_importance: Floats,
     repetition: NDArray[np.int32],
 ) -> xr.Dataset:
-    """Return the rows of a study with those of further rounds.
+    """Append the rows of further sampling rounds to the rows of a study.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def with_rounds(
 
 
 def _one_below_the_other(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Return the rows of all parts; what they have in common is that of the first."""
+    """Concatenate the rows of all parts; common variables are taken from the first part."""
     return xr.concat(
         parts,
         "row",
@@ -112,7 +113,7 @@ def _one_below_the_other(parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 
 def _places(study_rows: Result, count: int) -> dict[str, NDArray[np.integer]]:
-    """Return the places of new rows in the design, after those of the study."""
+    """Return the design indices of new rows, numbered after the rows of the study."""
     place = study_rows.nesting
     number = np.arange(count)
     sample, unit = np.divmod(number, place.units)

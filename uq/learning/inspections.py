@@ -1,4 +1,4 @@
-"""Inspections: read from files and tables, each of a result used once."""
+"""Inspections: reading from files and tables, with a check that each is used only once."""
 
 import csv
 import re
@@ -25,26 +25,26 @@ class InspectionKind(StrEnum):
 
 
 MOST_CV = 10.0
-"""Coefficient of variation that no error reaches: per cent, perhaps, or a mistake."""
+"""Implausibly large coefficient of variation of an error: probably given in per cent."""
 
 OUTCOMES = (InspectionKind.SURVIVED, InspectionKind.ENDED)
 
 
 @dataclass(frozen=True)
 class Inspection:
-    """One thing learnt about one unit.
+    """One observation of one unit.
 
     Attributes
     ----------
     unit : str
         The label of the unit.
     output : str
-        What was looked at: the name of an element, or such as ``depth[site=right]``.
+        The observed quantity: the name of an element, or for example ``depth[site=right]``.
     kind : InspectionKind
         ``measured``: the value; ``below``, ``above``: on which side of the value it lies, or
         whether it was not or was detected; ``survived``, ``ended``: whether the life had ended.
     time : float or None
-        From the beginning of the life, in its unit.
+        Time since the start of the life, in its unit.
     value : float or None
         In the unit of the output.
     sd : float or None
@@ -52,9 +52,9 @@ class Inspection:
     cv : float or None
         Coefficient of variation of a lognormal error, whose median is 1.
     detection_50, detection_90 : float or None
-        What is detected with these probabilities; in between, and beyond, by a lognormal curve.
+        Sizes detected with probability 50 % and 90 %; they define a lognormal detection curve.
     where : str
-        Where it is written, for messages: ``found.csv, line 3``.
+        Location in the source, for messages: ``found.csv, line 3``.
     """
 
     unit: str
@@ -113,7 +113,7 @@ def read_tables(
     tables : sequence of dict
         Column -> value.
     places : sequence of str, optional
-        Where each is written, for messages; by default its number.
+        Location of each in the source, for messages; by default its number.
     """
     numbers = [f"inspection {number}" for number in range(1, len(tables) + 1)]
     return _read_all(zip(places or numbers, tables, strict=True), _misfit)
@@ -123,7 +123,7 @@ def _read_all(
     entries: Iterable[tuple[str, Mapping[str, object]]],
     misfit: Callable[[str, object], Iterable[str]] = lambda name, value: (),
 ) -> list[Inspection]:
-    """Return inspections, given where each is written and its cells; refuse with all faults."""
+    """Parse inspections from their locations and cells; raise one error with all faults."""
     faults: list[str] = []
     inspections = []
     for where, table in entries:
@@ -200,7 +200,7 @@ def _no_column(name: str) -> str:
 
 
 def _numbers(cells: Mapping[str, str]) -> tuple[dict[str, float], list[str]]:
-    """Return the numbers of an inspection, and what is wrong with its cells."""
+    """Return the numbers of an inspection and the faults of its cells."""
     faults = [f"{name} is missing" for name in _REQUIRED if not cells.get(name, "").strip()]
     if not cells.get("unit", "").isprintable():
         faults.append(f"unit = {cells['unit']!r}: must consist of printable characters")
@@ -220,7 +220,7 @@ def _numbers(cells: Mapping[str, str]) -> tuple[dict[str, float], list[str]]:
 
 
 def _number(text: str) -> float:
-    if "_" in text or not text.isascii():  # which Python takes for digits, and no one else does
+    if "_" in text or not text.isascii():  # Python accepts these as digits
         raise ValueError
     number = read_number(text)
     if not isfinite(number):
@@ -229,7 +229,7 @@ def _number(text: str) -> float:
 
 
 def _conflicts(kind: InspectionKind, numbers: Mapping[str, float]) -> Iterator[str]:
-    """Yield the faults of the numbers of an inspection of a kind."""
+    """Yield numbers that are missing or not allowed for the kind of inspection."""
     given = [name for name in _NUMBERS if name in numbers]
     for name in ("sd", "cv", *_DETECTION):
         if name in numbers and numbers[name] <= 0:
@@ -265,7 +265,7 @@ def _conflicts(kind: InspectionKind, numbers: Mapping[str, float]) -> Iterator[s
 
 
 def _curve(curve: Sequence[str], numbers: Mapping[str, float]) -> Iterator[str]:
-    """Yield the faults of a curve of detection."""
+    """Yield the faults of a detection curve."""
     for name in _DETECTION:
         if name not in curve:
             yield f"{name} is missing beside {curve[0]}"
@@ -299,7 +299,7 @@ def read(given: Given) -> list[Inspection]:
 
 
 def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
-    """Return the tables ``[[inspection]]`` of a TOML file, and where each is written."""
+    """Return the tables ``[[inspection]]`` of a TOML file and their locations."""
     if node_kind := node(path):
         raise InputError(f"{path}: is {node_kind}, not a file")
     try:
@@ -323,12 +323,12 @@ def _tables(path: Path) -> tuple[list[Mapping[str, object]], list[str]]:
 
 
 def all_of(previous: Sequence[Inspection], new: Sequence[Inspection]) -> list[Inspection]:
-    """Return the inspections that a result has been updated with, and new ones.
+    """Combine the inspections already used by a result with new ones.
 
     Raises
     ------
     InputError
-        One line for each that has been used, and for each life that was seen running after its end.
+        One line for each inspection used before, and for each life observed running after its end.
     """
     used, faults = [*previous], []
     for inspection in new:

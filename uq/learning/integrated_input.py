@@ -1,4 +1,4 @@
-"""The input that only scales lives and is integrated on a grid, not drawn."""
+"""Integrated input: it only scales lives and is integrated by quadrature, not sampled."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,15 +25,15 @@ def dependent_outputs(rows: Result, name: str) -> Iterator[str]:
     Parameters
     ----------
     rows : Result
-        Before the inspections.
+        Rows before the update.
     name : str
         An input.
 
     Yields
     ------
     str
-        Those with an element whose ranks, of the means of samples if units share the input, follow
-        those of the input more closely than one in a million that do not.
+        Outputs with an element whose rank correlation with the input is significant at one in a
+        million (sample means are ranked if units share the input).
     """
     from scipy import stats
 
@@ -61,16 +61,16 @@ def dependent_outputs(rows: Result, name: str) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class IntegratedScale:
-    """An input that only scales lives, and is integrated on a grid.
+    """An input that only scales lives and is integrated by quadrature.
 
     Attributes
     ----------
     name : str
     level : str
     exponents : dict of str to float
-        What was inspected -> its exponent.
+        Observable -> its scaling exponent.
     drawn : ndarray, shape (n,)
-        The values of the rows.
+        The sampled values of the rows.
     inputs : Inputs
     """
 
@@ -82,7 +82,7 @@ class IntegratedScale:
 
     @property
     def is_own(self) -> bool:
-        """Whether each unit has its own."""
+        """Whether each unit has its own value."""
         return self.level == OWN
 
     def quantiles(self, probability: Floats) -> Floats:
@@ -93,11 +93,11 @@ class IntegratedScale:
 def scale_of(
     rows: Result, observables: Sequence[Observable]
 ) -> tuple[IntegratedScale | None, tuple[str, ...]]:
-    """Return the input to integrate, and sentences on those that do too much to be integrated.
+    """Return the input to integrate, and sentences on scaling inputs that cannot be integrated.
 
-    A shared one first, of these the one that scatters lives most. One that scales all lives and
-    depths that were inspected, and that no other output depends on: that would keep the values
-    computed with the input as drawn.
+    The input must scale all inspected lives and depths, and no other output may depend on it: such
+    an output would keep the values computed with the sampled input. Shared inputs are preferred,
+    then inputs that cause more scatter of the lives.
     """
     inputs, levels = inputs_of(rows), rows.levels
     exponents = {
@@ -129,7 +129,7 @@ def scale_of(
 
 
 def shared_inputs(rows: Result, scale: IntegratedScale | None) -> list[str]:
-    """Return the inputs that units share, without the integrated one and those equal to it."""
+    """Return the shared inputs, except the integrated input and inputs equal to it."""
     shared = [name for name, level in rows.levels.items() if level == SHARED]
     if scale is None or scale.is_own:
         return shared

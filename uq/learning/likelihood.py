@@ -19,22 +19,22 @@ _NINETY = float(special.ndtri(0.9))
 
 
 def log_likelihood(inspection: Inspection, truth: Floats, model_cv: float = 0.0) -> Floats:
-    """Return the logarithm of the likelihood of an inspection of a quantity.
+    """Return the log-likelihood of an inspection, given the true value.
 
     Parameters
     ----------
     inspection : Inspection
     truth : ndarray
-        Values of the quantity, in the unit of the inspection, or the life whose outcome it tells;
-        NaN where there is none.
+        Values of the observed quantity, in the unit of the inspection, or lives for a survival
+        outcome; NaN where missing.
     model_cv : float
-        Coefficient of variation of reality about the model: lognormal, with median 1, beside a
-        lognormal error or a detection curve; normal beside a normal error or an exact limit.
+        Coefficient of variation of the model error: lognormal with median 1 if combined with a
+        lognormal error or a detection curve; normal with a normal error or an exact limit.
 
     Returns
     -------
     ndarray
-        Of the same shape; -inf where the inspection is impossible, or the row has no value.
+        Same shape as `truth`; -inf where the inspection is impossible or the row has no value.
     """
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         logarithm = _of_kind(inspection, np.asarray(truth, dtype=float), model_cv)
@@ -66,12 +66,12 @@ def _of_kind(inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
 
 
 def _log_whether(kind: InspectionKind, truth: Floats, limit: float | None) -> Floats:
-    """Return 0 where the truth agrees with an observation without error, else -inf."""
+    """Return the log-likelihood of an error-free observation: 0 if consistent, else -inf."""
     return np.where(_AGREES[kind](truth, limit), 0.0, -np.inf)
 
 
 def _log_side(kind: InspectionKind, z: Floats) -> Floats:
-    """Return the logarithm of the probability of lying on a side of a limit, z errors above."""
+    """Return the log probability of one side of a limit, for a truth `z` errors above it."""
     return np.asarray(special.log_ndtr(z if kind is InspectionKind.BELOW else -z))
 
 
@@ -82,7 +82,7 @@ def _sigma(cv: float) -> float:
 def drawn_measurement(
     inspection: Inspection, truth: Floats, rng: np.random.Generator, model_cv: float = 0.0
 ) -> Floats:
-    """Draw what a measurement finds.
+    """Draw simulated measurements.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def drawn_measurement(
     Returns
     -------
     ndarray
-        Of the same shape, NaN where there is no truth.
+        Same shape as `truth`, NaN where `truth` is missing.
     """
     noise = rng.standard_normal(truth.shape)
     if inspection.cv is not None:
@@ -105,7 +105,7 @@ def drawn_measurement(
 
 
 def log_most(inspection: Inspection, model_cv: float = 0.0) -> float:
-    """Return a bound of the logarithm of the likelihood of an inspection, whatever the truth."""
+    """Return the largest log-likelihood of an inspection over all true values (upper bound)."""
     if inspection.kind is not InspectionKind.MEASURED:
         return 0.0
     assert inspection.value is not None

@@ -1,4 +1,4 @@
-"""Value of the next inspection: the expected fall of the standard deviation that units share."""
+"""Value of the next inspection: expected reduction of the shared standard deviation."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,9 +18,9 @@ from uq.result.weights import OF_UNIT
 from uq.text.numbers import number, percent
 from uq.text.units import beside
 
-_ANY = 1e-300  # a value that no depth is beyond
+_ANY = 1e-300  # below every positive depth
 _FEW, _MOST = 0.01, 0.5
-"""Shares of the rows that do not determine a depth: above, the numbers are rough, and none."""
+"""Shares of rows without a determined depth: above, estimates are rough, or not given."""
 
 
 @dataclass(frozen=True)
@@ -30,18 +30,18 @@ class Worth:
     Attributes
     ----------
     life : str
-        The life that they are to narrow.
+        The life whose uncertainty is to be reduced.
     output : str
-        What is inspected.
+        The observable to inspect.
     spread : float
-        Standard deviation of the logarithm of the life that units share, before.
+        Standard deviation of the logarithm of the life due to shared inputs, before inspection.
     narrowing : dict of (float or None, int) to float
-        Time, number of units -> the share by which `spread` is expected to fall; NaN where rows
-        do not show it.
+        Time, number of units -> expected relative reduction of `spread`; NaN where the rows do not
+        determine it.
     time_unit : str
         CF unit of the times.
     notes : list of str
-        Which numbers are rough, and why.
+        Which estimates are rough, and why.
     """
 
     life: str
@@ -60,22 +60,22 @@ def worth(
     cv: float = 0.1,
     life: str | None = None,
 ) -> Worth:
-    """Estimate what it is worth to inspect more units.
+    """Estimate the value of inspecting more units (preposterior, Bayes linear).
 
     Parameters
     ----------
     result : Result, xarray.Dataset or path
         A result, or a posterior, with several units in each sample.
     output : str
-        What to inspect, as in the inspections of `uq.update`: ``depth[site=left]``, a life.
+        Observable to inspect, named as in `uq.update`: for example ``depth[site=left]``, or a life.
     times : sequence of float, optional
-        When, in the unit of the life; needed for a depth, and only for one.
+        Inspection times, in the unit of the life; required for a depth, not allowed otherwise.
     units : sequence of int
-        How many that were not inspected before, at least 1 each.
+        Numbers of additional units to inspect, at least 1 each.
     cv : float
         Coefficient of variation of the measurement.
     life : str, optional
-        The life that matters; needed where the study shows several.
+        The life of interest; required if the study shows several.
 
     Returns
     -------
@@ -89,10 +89,10 @@ def worth(
 
     Notes
     -----
-    The expected fall of the standard deviation of what samples share of the logarithm of the life,
-    by the best linear estimate from the mean of the logarithms measured [1]_: 1 - sqrt(1 - R^2).
-    Variances and covariances between samples are those of their means less what the scatter of
-    units adds.
+    The reduction is 1 - sqrt(1 - R^2): it applies to the standard deviation between samples of the
+    logarithm of the life, estimated by the best linear estimator from the mean of the measured
+    logarithms [1]_. Variance components between samples are the covariances of sample means, less
+    the contribution of the scatter between units.
 
     References
     ----------
@@ -139,7 +139,7 @@ def worth(
 
 
 def unit_of_time(result: Result, output: str) -> str:
-    """Return the CF unit of the time of an inspection of what a result has, or ""."""
+    """Return the CF unit of the inspection time of an observable, or ""."""
     observable = observables_of(result.independent).get(output)
     return observable.time_unit if observable and observable.depths is not None else ""
 
@@ -154,7 +154,7 @@ def _observable(
 
 
 def _rough(observable: Observable, time: float | None, weights: Floats) -> Iterator[str]:
-    """Yield how many rows do not determine a depth by a time; refuse where most do not."""
+    """Yield a note if some rows do not determine a depth at a time; refuse if most do not."""
     if observable.depths is None or time is None:
         return
     everyone, last = np.arange(len(weights)), observable.depths.depths[-1]
@@ -175,7 +175,7 @@ def _rough(observable: Observable, time: float | None, weights: Floats) -> Itera
 def _variance_components(
     pair: tuple[Floats, Floats], weights: Floats, place: Nesting
 ) -> tuple[Floats, Floats]:
-    """Return covariances of two values of each row, each (2, 2): between and within samples."""
+    """Return the covariance components between and within samples, each of shape (2, 2)."""
     kept = np.isfinite(pair[0]) & np.isfinite(pair[1])
     means = [place.means(np.where(kept, values, np.nan)) for values in pair]
     whole = np.isfinite(means[0])
@@ -193,7 +193,7 @@ def _variance_components(
 
 
 def _narrowing(between: Floats, within: Floats, units: int, error: float) -> float:
-    """Return the share by which the standard deviation of the life is expected to fall."""
+    """Return the expected relative reduction of the standard deviation of the life."""
     variance = between[1, 1] + (within[1, 1] + error) / units
     if not (between[0, 0] > 0 and variance > 0):
         return nan

@@ -15,16 +15,16 @@ from uq.result.result import Result
 from uq.text.element_names import same_name
 
 _BETWEEN = 16
-"""Places between two declared depths at which the monotone curve is tabulated."""
+"""Points per interval of declared depths at which the monotone curve is tabulated."""
 
 
 @dataclass(frozen=True)
 class WornDepths:
     """Worn depth of each row as a function of time.
 
-    The time to a depth is interpolated monotonically in the depth, from none at the beginning, and
-    continued straight beyond the last depth. Between the last depth that a row reaches and the
-    next, which it never reaches, it stays at the former.
+    Monotone interpolation of the time as a function of depth, starting at zero, with linear
+    extrapolation beyond the last depth. If a row never reaches the next declared depth, its depth
+    stays at the last one reached.
 
     Parameters
     ----------
@@ -68,10 +68,10 @@ class WornDepths:
         return np.asarray(np.isposinf(self.lives).any(axis=1))
 
     def error(self) -> Floats:
-        """Return how wrong each row is about a depth left out, relative, shape (n,).
+        """Return the largest leave-one-out interpolation error of each row, relative, shape (n,).
 
-        Of the depth between the first and the last at which it is worst; NaN with fewer than
-        three depths, or where not all are reached.
+        Maximum over the inner depths; NaN with fewer than three depths, or if a depth is not
+        reached.
         """
         worst = np.full(len(self.lives), np.nan)
         whole = np.isfinite(self.lives).all(axis=1)
@@ -83,7 +83,7 @@ class WornDepths:
         return worst
 
     def _curves(self) -> tuple[Floats, Floats]:
-        """Return depths and the time of each row to each of them."""
+        """Return tabulated depths and the time to each in every row."""
         from scipy.interpolate import PchipInterpolator
 
         ends = np.concatenate([[0.0], self.depths])
@@ -107,13 +107,13 @@ class WornDepths:
 
 
 _REACH = 3.0  # standard errors of a measurement
-_SAME = 0.01  # relative difference of likelihoods that tell as much
+_SAME = 0.01  # relative difference of likelihoods considered equal
 _FAR = 1e6  # times the last declared depth
 
 
 @dataclass(frozen=True)
 class Observable:
-    """One quantity that can be inspected, in all rows of a result.
+    """A quantity that can be inspected, with its values in all rows of a result.
 
     Attributes
     ----------
@@ -151,7 +151,7 @@ class Observable:
             Of the inspection, in `time_unit`.
         rows : ndarray of int, shape (n,)
         longer : ndarray, shape (n, g)
-            Factors by which lives of these rows are longer than computed.
+            Factors that lengthen the computed lives of these rows.
 
         Returns
         -------
@@ -167,13 +167,13 @@ class Observable:
         )
 
     def log_likelihood(self, inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
-        """Return the logarithm of the likelihood of an inspection, given `truth`."""
+        """Return the log-likelihood of an inspection, given `truth`."""
         if self.declared.is_angle:
             truth = self._angle(inspection, truth)
         return log_likelihood(inspection, truth, model_cv)
 
     def _angle(self, inspection: Inspection, truth: Floats) -> Floats:
-        """Return an angle on the turn of the value measured; of a limit, its magnitude."""
+        """Return angles unwrapped to the turn of the measured value; for a limit, magnitudes."""
         if inspection.kind is not InspectionKind.MEASURED or inspection.value is None:
             return np.abs(truth)
         turn = 2 * np.pi if self.unit == "rad" else 360.0
@@ -182,10 +182,10 @@ class Observable:
     def bounded(
         self, inspection: Inspection, rows: NDArray[np.intp], longer: Floats, model_cv: float
     ) -> Mask:
-        """Return where only bounds of the truth are known that leave the likelihood open, (n, g).
+        """Return the mask of values whose bounds do not determine the likelihood, shape (n, g).
 
-        A depth at which wear stops lies between two declared ones, and one of a censored life
-        anywhere beyond those that are reached.
+        If wear stops, the depth is only bounded by two declared depths. If the life is censored,
+        the depth is only bounded from below by the last depth reached.
         """
         if self.depths is not None:
             assert inspection.time is not None
@@ -198,7 +198,7 @@ class Observable:
         return self.censored[rows, None] & (self.values[rows, None] * longer < most)
 
     def open_depth(self, time: float, rows: NDArray[np.intp], longer: Floats) -> Mask:
-        """Return where only bounds of the depth at a time are known, shape (n, g)."""
+        """Return the mask of depths at a time that are only bounded, shape (n, g)."""
         assert self.depths is not None
         lives = self.depths.lives[rows]
         last = np.where(np.isfinite(lives), lives, 0.0).max(axis=1, keepdims=True)
@@ -238,7 +238,7 @@ def observables_of(result: Result) -> dict[str, Observable]:
 
 
 def as_named(observables: Mapping[str, Observable], inspection: Inspection) -> Inspection:
-    """Return an inspection with its output named as in the result."""
+    """Return the inspection with the canonical name of its output in the result."""
     name = same_name(inspection.output, [*observables])
     return inspection if name == inspection.output else replace(inspection, output=name)
 
@@ -352,7 +352,7 @@ def _depths(result: Result) -> Iterator[Observable]:
 
 
 def reach(inspection: Inspection) -> float:
-    """Return the largest value that an inspection can tell from larger ones."""
+    """Return the largest value that an inspection can distinguish from larger values."""
     if inspection.detection_90 is not None:
         return inspection.detection_90
     assert inspection.value is not None
@@ -364,7 +364,7 @@ def reach(inspection: Inspection) -> float:
 
 
 def _check_reach(observable: Observable, inspection: Inspection, last: float) -> None:
-    """Refuse a depth beyond the last one that the result knows of."""
+    """Refuse a depth beyond the last declared depth of the result."""
     if (most := reach(inspection)) > last:
         raise InputError(
             f"value = {inspection.value or most:g}: with its error it reaches {most:.3g}"

@@ -25,10 +25,10 @@ _WHOLE = "no row of this result agrees with"
 
 
 def contradictions(likelihoods: UnitLikelihoods, grids: Sequence[QuadratureGrid]) -> list[str]:
-    """Return messages that name the smallest set of inspections with which no row agrees.
+    """Return messages naming the smallest sets of inspections that no row is consistent with.
 
-    Single inspections, else pairs of one unit, else all of a unit, else those of two units that
-    share a world or an integrated input.
+    Checked in order: single inspections, pairs of one unit, all inspections of a unit, then pairs
+    of units that share a world or an integrated input.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def contradictions(likelihoods: UnitLikelihoods, grids: Sequence[QuadratureGrid]
 
 
 def _agreeing(agree: Mapping[Inspection, Mask], chosen: Iterable[Inspection]) -> Mask:
-    """Return which rows agree with all chosen inspections of a unit, shape (rows, g)."""
+    """Return the mask of rows consistent with all chosen inspections, shape (rows, g)."""
     return np.logical_and.reduce([agree[inspection] for inspection in chosen])
 
 
@@ -82,7 +82,7 @@ def _described(inspection: Inspection) -> str:
 
 
 def _agreeing_worlds(rows: Mask, block: NDArray[np.intp], likelihoods: UnitLikelihoods) -> Mask:
-    """Return in which worlds, with which values of an input that all share, some row agrees."""
+    """Return the mask of worlds and shared input values with at least one consistent row."""
     agreeing = np.zeros((likelihoods.worlds, rows.shape[1]), dtype=bool)
     np.logical_or.at(agreeing, likelihoods.world[block], rows)
     shared = likelihoods.shares_scale
@@ -110,12 +110,12 @@ class Posterior:
     likelihoods : UnitLikelihoods
         Of the inspected units, in their order.
     law : SharedLaw or None
-        Of the integrated input, where it is all that units share.
+        Posterior law of the integrated input, if units share no other input.
     not_integrated : tuple of str
-        Sentences on inputs that scale what was inspected, but do more.
+        Sentences on inputs that scale the observables but also affect other outputs.
     only_inspected : str
-        Why no row stands for a unit that was not inspected, or "": `any_unit` then tells what
-        units share, and nothing of their own.
+        Why no row represents an uninspected unit, or "". If not empty, `any_unit` describes the
+        shared inputs only.
     """
 
     any_unit: WeightedRows
@@ -129,12 +129,12 @@ class Posterior:
 
     @property
     def weights(self) -> list[Smoothed]:
-        """Of all units."""
+        """Weights for uninspected units and for each inspected unit."""
         return [self.any_unit.weights, *(weighted.weights for weighted in self.units.values())]
 
     @property
     def pulls(self) -> Floats:
-        """By how much each row moves the law, shape (n, terms)."""
+        """Influence of each row on the shared law, shape (n, terms)."""
         total = sum(
             weighted.pulls for weighted in self.units.values() if weighted.pulls is not None
         )
@@ -150,7 +150,7 @@ def posterior(rows: Result, inspections: Sequence[Inspection], model_cv: float =
         The independent rows of a result, or samples of several rows.
     inspections : sequence of Inspection
     model_cv : float
-        Of reality about the model, as for `uq.learning.likelihood.log_likelihood`.
+        Coefficient of variation of the model error, see `uq.learning.likelihood.log_likelihood`.
 
     Returns
     -------
@@ -182,7 +182,7 @@ def posterior(rows: Result, inspections: Sequence[Inspection], model_cv: float =
     with np.errstate(divide="ignore"):
         logs = logs - np.log(np.bincount(world, importance))[world, None]
         logs = logs + np.log(importance)[:, None]
-    # Units of a world differ in more than the integrated input.
+    # Units of a world also differ in inputs other than the integrated one.
     if several and {*rows.levels_that_vary([scale.name] if scale else ())} - {SHARED}:
         apart = log_worth(evidence, likelihoods, place)
         if np.isfinite(apart).any():
@@ -203,7 +203,7 @@ class Taught(NamedTuple):
     ----------
     inspection : Inspection
     bits : float
-        Relative entropy of what is known with it to what is known without it.
+        Relative entropy of the posterior with it to the posterior without it.
     units : str
         CF unit of what was inspected.
     time_unit : str
@@ -219,8 +219,8 @@ class Taught(NamedTuple):
 def taught(posterior: Posterior) -> Iterator[Taught]:
     """Yield the information gain of each inspection, in their order.
 
-    The information gain about everything unknown, worlds and units, from the knowledge that all
-    other inspections leave [1]_.
+    The gain concerns all unknowns, shared and of each unit, relative to the posterior given all
+    other inspections [1]_.
 
     References
     ----------
@@ -245,7 +245,7 @@ def taught(posterior: Posterior) -> Iterator[Taught]:
 
 
 def _gain(before: Floats, log_likelihood: Floats) -> float:
-    """Return the relative entropy that a likelihood adds to unnormalised logarithms [bit]."""
+    """Return the relative entropy of the updated to the given unnormalised log density [bit]."""
     after = before + log_likelihood
     total = special.logsumexp(after)
     share = np.exp(after - total)

@@ -16,18 +16,18 @@ from uq.stats.weighted_means import FEW
 from uq.text.numbers import percent
 
 CAMPAIGNS = 2000
-"""Campaigns drawn from the rows."""
+"""Number of inspection campaigns simulated from the rows."""
 
 STRANGE = 0.01
-"""Probability below which a warning is due."""
+"""Prior-predictive p-value below which a warning is issued."""
 
 
 def strangeness(posterior: Posterior, seed: int, model_cv: float) -> float:
-    """Return the probability, before the inspections, of inspections at least as improbable.
+    """Return the prior-predictive p-value of the inspections [1]_.
 
-    Campaigns with the same inspections are drawn from the rows and the laws of errors. How strange
-    a campaign is: the product over inspections of the two-sided probabilities of each value, and
-    of the probabilities of each outcome, among all campaigns [1]_.
+    Campaigns with the same inspections are simulated from the rows and the error laws. The test
+    statistic is the product over inspections of the two-sided tail probability of each value, and
+    of the probability of each outcome, among all campaigns.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def strangeness(posterior: Posterior, seed: int, model_cv: float) -> float:
     study_rows = np.flatnonzero(likelihoods.from_study)
     world = likelihoods.world[study_rows[rng.integers(len(study_rows), size=CAMPAIGNS)]]
     common = rng.random(CAMPAIGNS)
-    score = np.zeros(CAMPAIGNS + 1)  # the last is that of the real inspections
+    score = np.zeros(CAMPAIGNS + 1)  # the last belongs to the real inspections
     for block, inspections in zip(likelihoods.blocks, likelihoods.inspections, strict=True):
         rows = _rows(block[likelihoods.from_study[block]], likelihoods.world, world, rng)
         individual = rng.random(CAMPAIGNS)
@@ -63,7 +63,7 @@ def _rows(
     world: NDArray[np.intp],
     rng: np.random.Generator,
 ) -> NDArray[np.intp]:
-    """Return a row of a block at random in each of some worlds."""
+    """Draw one random row of a block in each given world."""
     order = block[np.argsort(world_of[block], kind="stable")]
     first, after = (np.searchsorted(world_of[order], world, side=s) for s in ("left", "right"))
     return np.asarray(order[first + np.floor(rng.random(len(world)) * (after - first)).astype(int)])
@@ -76,7 +76,7 @@ def _log_probability(
     rng: np.random.Generator,
     model_cv: float,
 ) -> Floats:
-    """Return the log probability of the inspection in each campaign; the real one is last."""
+    """Return the log tail probability of an inspection in each campaign, the real one last."""
     n = len(truth)
     if inspection.kind is not InspectionKind.MEASURED:
         observable = likelihoods.observables[inspection]
@@ -97,14 +97,14 @@ HOPELESS = (
 )
 
 _MODERATE = 100.0
-"""Times the rows that can still be added."""
+"""Factor by which rows can still reasonably be added."""
 
 _OPEN = 0.01
-"""Share of rows in which a censored life may leave open what an inspection saw."""
+"""Largest acceptable share of rows in which censoring hides the observable."""
 
 
 def censoring(posterior: Posterior) -> str:
-    """Return that censored lives leave open what inspections saw, or ""."""
+    """Return a warning if censoring hides the observable in too many rows, or ""."""
     for unit, (label, weighted) in enumerate(posterior.units.items()):
         likelihoods = posterior.likelihoods
         before, after = likelihoods.bounded(unit), likelihoods.bounded(unit, weighted.scale)
@@ -121,7 +121,7 @@ def censoring(posterior: Posterior) -> str:
 
 
 def distrust(posterior: Posterior) -> str:
-    """Return why the weights of a posterior cannot be trusted, or ""."""
+    """Return why the weights of a posterior are unreliable, or ""."""
     weighted_by_name = {"what all units share": posterior.any_unit}
     weighted_by_name |= {f"unit {label}": weighted for label, weighted in posterior.units.items()}
     fewest_first = sorted(weighted_by_name.items(), key=lambda pair: pair[1].weights.effective)
@@ -163,6 +163,6 @@ def _why(weighted: WeightedRows) -> str:
 
 
 def _rounded_up(count: float) -> int:
-    """Return a number of rows with two digits."""
+    """Return a number of rows rounded up to two digits."""
     unit = 10 ** max(len(str(ceil(count))) - 2, 0)
     return ceil(count / unit) * unit

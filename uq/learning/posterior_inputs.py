@@ -1,4 +1,4 @@
-"""Inputs before and after the inspections, and which of them the inspections confound."""
+"""Prior and posterior of the inputs, and pairs of inputs correlated in the posterior."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from uq.stats.weighted_means import moments_of_rows, trusted
 QUANTILES = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 
 CONFOUNDED = 0.3
-"""Correlation of ranks, in magnitude, from which a pair is reported."""
+"""Smallest reported rank correlation of a pair, in magnitude."""
 
 _FEW_ROWS = "it rests on a few rows, and more hardly help; read the quantiles"
 
@@ -32,8 +32,8 @@ class PosteriorMoments:
     Attributes
     ----------
     mean, sd : Estimate
-        Of the posterior with intervals, which say how well the rows determine them; missing, with
-        the reason, where Pareto k of weight times value, or times its square, is too large.
+        For the posterior with confidence intervals for the sampling error; missing, with the
+        reason, if Pareto k of weight times value, or times its square, is too large.
     quantiles : dict of float to float
     """
 
@@ -44,7 +44,7 @@ class PosteriorMoments:
 
 @dataclass(frozen=True)
 class InputLearnt:
-    """An input before and after the inspections.
+    """Prior and posterior moments of an input.
 
     Attributes
     ----------
@@ -61,13 +61,13 @@ class InputLearnt:
 
     @property
     def unit(self) -> str:
-        """The label of the unit that has it, "" for one that is shared."""
+        """Label of the unit that the input belongs to, "" for a shared input."""
         return self.name.partition("[unit=")[2].removesuffix("]")
 
 
 @dataclass(frozen=True)
 class Confounded:
-    """Two inputs whose ranks are correlated by the inspections.
+    """Two inputs with correlated ranks in the posterior.
 
     Attributes
     ----------
@@ -96,9 +96,9 @@ def inputs_learnt(result: Result) -> Iterator[InputLearnt]:
 
 
 def confounded(result: Result) -> list[Confounded]:
-    """Return the pairs of inputs that the inspections tie, the most correlated first.
+    """Return the pairs of inputs correlated in the posterior, the most correlated first.
 
-    Shared inputs, and in each inspected unit those with its own.
+    Pairs of shared inputs and, for each inspected unit, pairs with an input of the unit.
     """
     levels, before = result.levels, prior_of(result)
     shared = [name for name, level in levels.items() if level == SHARED]
@@ -112,7 +112,7 @@ def confounded(result: Result) -> list[Confounded]:
 def _pairs(
     result: Result, before: Result, names: list[str], wanted: set[str], label: str
 ) -> list[Confounded]:
-    """Return the pairs of which one at least is wanted."""
+    """Return the correlated pairs with at least one requested input."""
     if len(names) < 2:
         return []
     after = _correlations(result, names, result.dataset[WEIGHT].values)
@@ -127,7 +127,7 @@ def _pairs(
 
 
 def _correlations(rows: Result, names: list[str], weights: Floats) -> Floats:
-    """Return the rank correlations of inputs of weighted rows."""
+    """Return the rank correlation matrix of inputs in weighted rows."""
     ranks = np.empty((len(names), len(rows)))
     for name, rank in zip(names, ranks, strict=True):
         order, share = _ascending(rows.dataset[name].values, weights)
@@ -139,7 +139,7 @@ def _correlations(rows: Result, names: list[str], weights: Floats) -> Floats:
 
 
 def _ascending(values: Floats, weights: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Return the order of values, and the share of the weight up to the middle of each."""
+    """Return the ascending order of values and their midpoint cumulative weights."""
     order = np.argsort(values, kind="stable")
     worth = weights[order] / weights.sum()
     return order, np.cumsum(worth) - worth / 2
@@ -163,6 +163,6 @@ def _after(result: Result, name: str, asked: tuple[float, ...]) -> PosteriorMome
 
 
 def quantiles(values: Floats, weights: Floats, asked: tuple[float, ...]) -> dict[float, float]:
-    """Return the quantiles asked for of weighted values."""
+    """Return weighted quantiles at the given probabilities."""
     order, share = _ascending(values, weights)
     return dict(zip(asked, np.interp(asked, share, values[order]).tolist(), strict=True))

@@ -53,7 +53,7 @@ _LAW = (LAW_PULLS, UNIT_PULLS, LAW_FOLLOWS, LAW_SCORES)
 _WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES, *_LAW)
 _NESTING = ("world", "unit", "repeat")
 _COMPRESSED = {"zlib": True, "complevel": 1}
-"""Most rows stand for one of the inspected units, and say the same of all others."""
+"""Most rows represent one inspected unit and have equal entries for all others."""
 
 
 def as_result(
@@ -70,25 +70,24 @@ def as_result(
     rows : Result
         The independent rows of a result, or samples of several rows.
     posterior : Posterior
-        What the inspections leave of them.
+        The posterior of these rows.
     inspections : sequence of Inspection
     model_cv : float
     new_rows : int
-        How many new rows were allowed, 0 if none was needed.
+        Number of new rows that were allowed, 0 if none was required.
 
     Returns
     -------
     xarray.Dataset
-        ``weight`` of each row, as a unit that was not inspected; ``unit_weight`` (inspected,
-        sample), as each inspected one. An integrated input has the values that the inspections
-        leave, and the lives that it scales are those for these values; as computed they are kept
-        with the prefix ``prior_``. ``unit_scale`` (inspected, sample): the integrated input as that
-        of each inspected unit, one value of its law in each row; ``unit_scale_scores``
-        (inspected, sample, score): that law. ``learnt_law_pulls``, ``learnt_law_follows``
-        (sample, term), ``unit_law_pulls`` (inspected, sample, term), ``learnt_law_scores``
-        (score,): what the rows say together of one that all units share
-        (`uq.learning.scale_posterior`). Attributes: ``inspections``, and ``ledger``, a digest of
-        each.
+        ``weight`` of each row as an uninspected unit; ``unit_weight`` (inspected, sample) as each
+        inspected unit. An integrated input has values drawn from its posterior, and the lives that
+        it scales are rescaled to them; computed values are kept with the prefix ``prior_``.
+        ``unit_scale`` (inspected, sample): posterior draw of the integrated input of each inspected
+        unit in each row; ``unit_scale_scores`` (inspected, sample, score): its posterior law.
+        ``learnt_law_pulls``, ``learnt_law_follows`` (sample, term), ``unit_law_pulls``
+        (inspected, sample, term), ``learnt_law_scores`` (score,): posterior law of an integrated
+        input that all units share, and influence of the rows (`uq.learning.scale_posterior`).
+        Attributes: ``inspections``, and ``ledger``, a digest of each.
     """
     if taken := [name for name in _WEIGHTS if name in rows.dataset.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
@@ -162,7 +161,7 @@ def _of_law(posterior: Posterior, scale: str, attrs: dict[str, Any]) -> dict[str
 
 
 def prior_of(result: Result) -> Result:
-    """Return the rows of a posterior as they were before the inspections."""
+    """Return the prior rows of a posterior, without the effect of inspections."""
     if not result.has_weights:
         return result
     dataset = result.dataset
@@ -187,7 +186,7 @@ _OF_POSTERIOR = (
 
 
 def as_unit(result: AnyResult, label: str) -> xr.Dataset:
-    """Return the rows of a posterior as those of one inspected unit.
+    """Return the rows of a posterior, weighted to represent one inspected unit.
 
     Parameters
     ----------
@@ -227,7 +226,7 @@ def as_unit(result: AnyResult, label: str) -> xr.Dataset:
         if LAW_PULLS in result.dataset:
             rows = rows.assign(_law_of_unit(result, Result(rows), place))
     if result.dataset.attrs[WORLDS] == 1 and prior.nesting.repeats == 1:
-        # Rows of one sample have nothing in common: each has a value of the integrated input.
+        # Rows of one sample share nothing: each has a separate value of the integrated input.
         rows = rows.drop_vars(_NESTING, errors="ignore")
     weight = result.dataset.variables[WEIGHT].copy(data=result.dataset[UNIT_WEIGHT].values[place])
     weight.attrs[MOST] = float(result.dataset[UNIT_MOST].values[place])
@@ -236,7 +235,7 @@ def as_unit(result: AnyResult, label: str) -> xr.Dataset:
 
 
 def _law_of_unit(result: Result, rows: Result, place: int) -> dict[str, Any]:
-    """Return the variables of that law for the rows of a unit."""
+    """Return the variables of the shared law for the rows of a unit."""
     name, inputs = result.dataset.attrs[INTEGRATED], inputs_of(rows)
     law, pulls = result.dataset[LAW_SCORES], result.dataset[UNIT_PULLS]
     below = cdf_within(inputs.laws[name], rows.dataset[name].values, inputs.bounds[name])
@@ -255,7 +254,7 @@ def every_unit(result: Result) -> Iterator[tuple[str, Result]]:
 
 
 def inspections_of(result: Result) -> list[Inspection]:
-    """Return the inspections that a posterior rests on."""
+    """Return the inspections used by a posterior."""
     with first_fault_alone():
         return read_tables(json.loads(result.dataset.attrs.get(INSPECTIONS, "[]")))
 
@@ -278,7 +277,7 @@ def _prior_title(result: Result) -> str:
 def _among_all(
     places: NDArray[np.intp], values: Floats | None, n: int, other: float | Floats
 ) -> Floats:
-    """Return values of some rows among all n rows, another value for the others."""
+    """Scatter the values of some rows into an array of all n rows, with a fill value."""
     filled = np.full((n, *np.shape(other)), other)
     if values is not None:
         filled[places] = values
@@ -291,7 +290,7 @@ def _as_prior(variable: xr.DataArray) -> xr.DataArray:
 
 
 def _rescaled(rows: Result, name: str, values: Floats) -> dict[str, xr.DataArray]:
-    """Return an input with other values, those equal to it, and the lives that they scale."""
+    """Return the variables with new values of an input, equal inputs, and rescaled lives."""
     inputs, outputs = inputs_of(rows), rows.outputs
     members = (name, *(member for member, leader in inputs.tied.items() if leader == name))
     rescaled = {member: rows.dataset[member].copy(data=values) for member in members}
@@ -307,5 +306,5 @@ def _rescaled(rows: Result, name: str, values: Floats) -> dict[str, xr.DataArray
 
 
 def unit_quality(result: Result) -> list[Smoothed]:
-    """Return the weights of the rows of a posterior, as any unit and as each inspected one."""
+    """Return the weights of a posterior, for uninspected units and each inspected unit."""
     return [weights for _, rows in every_unit(result) if (weights := rows.weights) is not None]

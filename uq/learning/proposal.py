@@ -1,4 +1,4 @@
-"""Where to draw new rows: mixtures of Student laws, in independent repetitions of the sampler."""
+"""Adaptive importance sampling of new rows: Student mixtures, in independent repetitions."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from uq.contract import Floats
 from uq.stats.importance_weights import effective_rows
 
 FREEDOM = 5.0
-"""Degrees of freedom: tails heavier than those of a posterior."""
+"""Degrees of freedom of the Student laws: tails heavier than those of a posterior."""
 
 _CENTRES = 100
 _LEAST = 100.0
@@ -24,12 +24,12 @@ _LOG_ROOT = float(np.log(2 * np.pi) / 2)
 class Proposal(NamedTuple):
     """A mixture of equal Student laws in some of the normal scores of the inputs.
 
-    All other scores have the standard normal law, as all scores have before the inspections.
+    The other scores keep their prior law, the standard normal.
 
     Attributes
     ----------
     columns : ndarray of int, shape (k,)
-        The scores with a law of their own.
+        The scores drawn from the mixture.
     centres : ndarray, shape (c, k)
     root : ndarray, shape (k, k)
         Lower triangular root of their common matrix.
@@ -40,7 +40,7 @@ class Proposal(NamedTuple):
     root: Floats
 
     def drawn(self, count: int, inputs: int, rng: np.random.Generator) -> Floats:
-        """Draw normal scores of so many rows, shape (count, inputs)."""
+        """Draw normal scores of `count` rows, shape (count, inputs)."""
         scores = rng.standard_normal((count, inputs))
         chosen = self.centres[rng.integers(len(self.centres), size=count)]
         tail = np.sqrt(FREEDOM / rng.chisquare(FREEDOM, size=count))
@@ -48,7 +48,7 @@ class Proposal(NamedTuple):
         return np.asarray(scores.clip(-_EDGE, _EDGE))
 
     def log_ratio(self, scores: Floats) -> Floats:
-        """Return the logarithm of its density over that before the inspections, shape (n,)."""
+        """Return the log ratio of the proposal density to the prior density, shape (n,)."""
         at, k = scores[:, self.columns], len(self.columns)
         constant = (
             special.gammaln((FREEDOM + k) / 2)
@@ -66,29 +66,29 @@ class Proposal(NamedTuple):
             return np.asarray(np.log(density) + constant + (at**2 / 2).sum(axis=1) + k * _LOG_ROOT)
 
     def wider(self, factor: float) -> "Proposal":
-        """Return the same around the same centres, wider by a factor."""
+        """Return the mixture with its scale multiplied by a factor."""
         return self._replace(root=factor * self.root)
 
     def _whitened(self, at: Floats) -> Floats:
-        # Not by BLAS, whose threads take longer to start than so few columns to compute.
+        # Without BLAS: for few columns its threads cost more than the computation.
         return np.einsum("ij,nj->in", np.linalg.inv(self.root), at)
 
 
 def tempered(log_before: Floats, log_likelihood: Floats) -> Floats:
-    """Return weights with as much of the likelihood as leaves enough rows.
+    """Return tempered weights with a sufficient effective sample size.
 
     Parameters
     ----------
     log_before : ndarray, shape (n,)
-        What rows count without the likelihood.
+        Log weights without the likelihood.
     log_likelihood : ndarray, shape (n,)
         Not all -inf.
 
     Returns
     -------
     ndarray, shape (n,)
-        With the likelihood to the largest power, at most 1, that leaves 100 effective rows, or
-        half of what is possible.
+        Weights with the likelihood raised to the largest power, at most 1, that keeps an effective
+        sample size of 100, or half of the possible one.
     """
 
     def weights(power: float) -> Floats:
@@ -140,28 +140,26 @@ def fitted(
 
 
 _WIDER = 2.0
-"""Of a last proposal: tails that are too light bias what its rows say, and too heavy ones only cost
-rows."""
+"""Widening factor of the last proposal: light tails bias estimates, heavy ones only cost rows."""
 
 
 class Repetition:
-    """The rows of one repetition, in the order of their rounds, and how much they count.
+    """The rows of one sampler repetition, in order of rounds, with their importance weights.
 
     Parameters
     ----------
     scores : ndarray, shape (own, inputs)
-        Normal scores of the rows of the study with which it begins.
+        Normal scores of the initial rows, from the study.
     each : int
-        Rows that it draws in a round.
+        Rows drawn per round.
     last : Proposal, optional
-        From which it draws all its rows; by default it fits one anew in each round.
+        Fixed proposal for all rows; by default a new one is fitted in each round.
 
     Attributes
     ----------
     log_importance : ndarray, shape (n,)
-        How much its rows count before the inspections: the density before the inspections over the
-        mixture of all that they were drawn from [1]_, each in proportion to its rows. At most
-        n / `own`.
+        Log prior importance weights: prior density over the mixture of all proposals used [1]_, in
+        proportion to their rows (balance heuristic). Weights are at most n / `own`.
 
     References
     ----------
@@ -221,10 +219,10 @@ class Repetition:
         columns: NDArray[np.intp],
         rng: np.random.Generator,
     ) -> "list[Repetition]":
-        """Return repetitions that begin anew, and draw around all rows that these have so far.
+        """Restart the repetitions with one fixed proposal fitted to all rows drawn so far.
 
-        Their rows are independent of the proposal, and of each other given it. Those to which
-        proposals were fitted are not: they count too little, for the proposals are denser there.
+        The new rows are conditionally independent given the proposal. Rows used to fit a proposal
+        are biased: their weights are too small, because the proposal is denser near them.
 
         Parameters
         ----------
@@ -251,7 +249,7 @@ def _around(
     columns: NDArray[np.intp],
     rng: np.random.Generator,
 ) -> Proposal:
-    """Return a proposal around rows, weighted with as much likelihood as they bear."""
+    """Fit a proposal to rows with tempered weights."""
     weights = np.zeros(len(scores))
     for log_likelihood in log_likelihoods:
         possible = (

@@ -1,4 +1,4 @@
-"""Remaining lives: of each unit still running, and of units never inspected."""
+"""Remaining lives of units still running and of units never inspected."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -29,7 +29,7 @@ ENDS = (0.025, 0.975)
 
 
 def over_shared(result: Result, element: Element, seen: float, time: float) -> dict[float, float]:
-    """Return the 95 % range of P(T < time) given T > `seen`, of a unit never inspected.
+    """Return the 95 % band of P(T < time | T > `seen`) over the shared inputs, for a new unit.
 
     Parameters
     ----------
@@ -43,9 +43,9 @@ def over_shared(result: Result, element: Element, seen: float, time: float) -> d
     Returns
     -------
     dict of float to float
-        Probability -> quantile over what units share. Empty unless that is one integrated input
-        that scales this life, and no row is censored too early: only then does each of its values
-        give the probability without the noise of a few units.
+        Probability -> quantile over the shared inputs. Empty unless one integrated input is shared,
+        scales this life, and no row is censored too early: only then is the probability at each of
+        its values free of the sampling noise of a few units.
     """
     name = result.dataset.attrs[INTEGRATED]
     if not name or result.dataset.attrs[WORLDS] > 1 or result.levels[name] != SHARED:
@@ -68,14 +68,14 @@ def over_shared(result: Result, element: Element, seen: float, time: float) -> d
 
 
 def _below(values: Floats, weights: Floats, at: Floats) -> Floats:
-    """Return the share of weighted values below others."""
+    """Return the weighted empirical distribution function of `values` at other values."""
     order = np.argsort(values)
     share = np.append(0.0, np.cumsum(weights[order]) / weights.sum())
     return np.asarray(share[np.searchsorted(values[order], at, side="left")])
 
 
 def shown_lives(result: Result) -> Iterator[tuple[str, Output]]:
-    """Yield the lives that a result shows and that end, not succeed."""
+    """Yield the shown lives that end in failure, not in success."""
     declared = result.outputs
     for name in result.shown_outputs(result.analysis):
         if declared[name].is_lifetime and not declared[name].success:
@@ -83,7 +83,7 @@ def shown_lives(result: Result) -> Iterator[tuple[str, Output]]:
 
 
 def read_times(option: str, texts: Sequence[str], result: Result) -> list[float]:
-    """Return times that an option of the command line gives, with or without a unit.
+    """Parse times from a command-line option, with or without a unit.
 
     Parameters
     ----------
@@ -91,12 +91,12 @@ def read_times(option: str, texts: Sequence[str], result: Result) -> list[float]
         Such as ``--by``.
     texts : sequence of str
     result : Result
-        Whose lives they are times of.
+        The result whose lives the times refer to.
 
     Raises
     ------
     InputError
-        When one is no such time, in a unit that does not fit, or lives are in several units.
+        When a time is invalid, its unit does not fit, or lives have different units.
     """
     if not texts:
         return []
@@ -117,7 +117,7 @@ def check_times(times: Sequence[float], asked_by: str) -> None:
 
 PROBABILITIES = (0.05, 0.5, 0.95)
 ANY = ""
-"""A unit that was never inspected."""
+"""Label of units never inspected."""
 
 _GONE = "hardly any row agrees with its inspections and still runs"
 _LEAST = 1e-3
@@ -125,7 +125,7 @@ _LEAST = 1e-3
 
 @dataclass(frozen=True)
 class Remaining:
-    """Remaining life of a unit, given that it still runs.
+    """Remaining life of a unit, conditional on survival until now.
 
     Attributes
     ----------
@@ -136,17 +136,17 @@ class Remaining:
     units : str
         CF unit of that life and of all times here.
     seen : float
-        When it was last seen running; for units never inspected, the latest inspection.
+        Time when it was last seen running; for units never inspected, of the latest inspection.
     runs : Estimate
-        Probability that this life has not ended by then, given the inspections.
+        Posterior probability that the unit survives this time.
     life : dict of float to Estimate
-        Probability -> quantile of the remaining life, from then on.
+        Probability -> quantile of the remaining life, counted from `seen`.
     by : dict of float to Estimate
-        Time from the beginning of the life -> probability that it has ended by then.
+        Time since the start of the life -> probability of failure by then.
     effective_rows : float
     over_shared : dict of float to dict of float to float
-        For units never inspected: time -> 2.5 and 97.5 % points, over what units share, of that
-        probability (`uq.learning.remaining_life`).
+        For units never inspected: time -> 2.5 and 97.5 % quantiles of that probability over the
+        shared inputs (`over_shared`).
     """
 
     unit: str
@@ -161,7 +161,7 @@ class Remaining:
 
 
 def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
-    """Yield the remaining lives of units that no inspection has found ended.
+    """Yield the remaining lives of units not observed to have failed.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
 
 
 def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:
-    """Return the time of the latest of some inspections in each unit of time."""
+    """Return the time of the latest inspection, expressed in each unit of time."""
     latest: dict[str, float] = {}
     for inspection, unit in units.items():
         if inspection.time is not None:
@@ -243,6 +243,6 @@ def _of_life(
 
 
 def _after(seen: float, life: Estimate) -> Estimate:
-    """Return the estimate of a remaining life, from that of the life."""
+    """Return the estimate of a remaining life from the estimate of the life."""
     ends = {name: max(getattr(life, name) - seen, 0.0) for name in ("value", "low", "high")}
     return replace(life, **ends)

@@ -1,4 +1,4 @@
-"""Rows that stand for a unit: weighted, each with a value or law of the integrated input."""
+"""Weighted rows that represent a unit, each with a value or law of the integrated input."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -29,7 +29,7 @@ Places = NDArray[np.integer]
 
 
 def log_worth(evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting) -> Floats:
-    """Return leave-one-out log weights: of each row, given the inspections of other units.
+    """Return leave-one-out log weights: each row given the inspections of the other units.
 
     Parameters
     ----------
@@ -43,10 +43,9 @@ def log_worth(evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting) 
     Returns
     -------
     ndarray, shape (n, g)
-        Logarithm of the probability of the world of each row, and of each value of an integrated
-        input that its units share (else g is 1), with the mean likelihood of the inspected unit for
-        which the row stands taken over the other units of the world that do; -inf where there is
-        none.
+        Log probability of the world of each row, for each value of an integrated input shared by
+        units (else g is 1). The mean likelihood of the inspected unit that the row represents is
+        taken over the other units of the world that represent it; -inf where there is none.
     """
     values = [grid.values for grid in evidence.grids]
     shared = likelihoods.shares_scale
@@ -61,7 +60,7 @@ def log_worth(evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting) 
 
 
 def _mean_of_others(logs: Floats, of_unit: Places, sample: Places) -> Floats:
-    """Return the logarithm of the mean over the rows of other units of the sample, shape (m, g)."""
+    """Return the log mean over the rows of the other units of the sample, shape (m, g)."""
     _, unit = np.unique(of_unit, return_inverse=True)
     top = np.full((sample.max() + 1, logs.shape[1]), -np.inf)
     np.maximum.at(top, sample, logs)
@@ -84,20 +83,20 @@ _HUGE = 700.0
 
 @dataclass(frozen=True)
 class WeightedRows:
-    """Rows that stand for a unit.
+    """Weighted rows that represent a unit.
 
     Attributes
     ----------
     rows : ndarray of int, shape (m,)
     weights : Smoothed
     scale : ndarray, shape (m,), or None
-        What the integrated input is in each row.
+        Value of the integrated input in each row.
     scores : ndarray, shape (m, q), or None
         Its law in each row of an inspected unit (`LearntScale`).
     terms : ndarray, shape (m, terms), or None
-        Means over the law of the input in each row of the terms of one that all units share.
+        Terms of an input shared by all units, averaged over its law in each row.
     pulls : ndarray, shape (m, terms), or None
-        By how much each row moves that law as an inspected unit.
+        Influence of each row, as an inspected unit, on that law.
     """
 
     rows: NDArray[np.intp]
@@ -108,9 +107,10 @@ class WeightedRows:
     pulls: Floats | None = None
 
     def without_own(self, pulls: Floats) -> Floats:
-        """Return by how much each of all rows moves the law for others, shape (n, terms).
+        """Return the influence of each row on the law used by other rows, shape (n, terms).
 
-        A row does not count for its own, nor do values drawn as evenly as the law has them.
+        The influence of a row on itself, and the effect of values stratified over the law, are
+        excluded.
         """
         assert self.terms is not None
         adjusted = pulls.copy()
@@ -126,7 +126,7 @@ def uninspected(
     part: Replicates,
     law: SharedLaw | None,
 ) -> WeightedRows:
-    """Return all rows, as units that share their world with the inspected ones.
+    """Return all rows, weighted as uninspected units of the same world as the inspected ones.
 
     Rows of a sample with the same law of the integrated input have the same value of it.
     """
@@ -146,7 +146,7 @@ def uninspected(
 
 
 def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
-    """Return smoothed weights: those of a sample whose rows count alike stay alike."""
+    """Return Pareto-smoothed weights; rows of a sample with equal weights keep equal weights."""
     _, first = np.unique(place.sample, return_index=True)
     if not np.array_equal(log_rows, log_rows[first][place.sample]):
         return smoothed(log_rows, part)
@@ -161,10 +161,10 @@ def inspected(
     part: Replicates,
     law: SharedLaw | None,
 ) -> WeightedRows:
-    """Return the rows that stand for an inspected unit.
+    """Return the weighted rows that represent an inspected unit.
 
-    Where units have no world in common but all rows, the likelihood bounds their weights: no value
-    of the integrated input that the grid leaves out makes all else more probable than it does.
+    If all rows form a single world, the likelihood bounds the weights: values of the integrated
+    input omitted by the grid do not raise the probability of the other inspections.
     """
     rows, grid, scale = likelihoods.blocks[unit], evidence.grids[unit], likelihoods.scale
     world, rest = likelihoods.world[rows], evidence.rest[unit]
@@ -177,7 +177,7 @@ def inspected(
     worth = masses(grid, edges, np.exp(joint - top))
     of_rows = worth.sum(axis=1)
     most = np.inf
-    if len(rest) == 1:  # with several worlds, others make some rows count
+    if len(rest) == 1:  # with several worlds, the weights also depend on the other units
         all_else = special.logsumexp(rest) - np.log((grid.high - grid.low) * size[0])
         log_most = likelihoods.log_most(unit) + all_else - top - np.log(of_rows.mean())
         most = float(np.exp(min(log_most, _HUGE)))
@@ -199,12 +199,12 @@ def inspected(
 def _allowed_in_unit(
     likelihoods: UnitLikelihoods, scale: IntegratedScale, unit: int, places: Floats
 ) -> Mask:
-    """Return where the inspections of a unit allow a value of the input in each row, shape (m,)."""
+    """Return the mask of rows whose input value has non-zero likelihood for a unit, shape (m,)."""
     return likelihoods.log_likelihood(unit, scale.quantiles(places)[:, None])[:, 0] > -np.inf
 
 
 def _allowed_in_world(likelihoods: UnitLikelihoods, scale: IntegratedScale, places: Floats) -> Mask:
-    """Return where inspections allow values of an input that the units of a world share, (n,)."""
+    """Return the mask of shared input values allowed by all inspections of a world, shape (n,)."""
     values, world = scale.quantiles(places)[:, None], likelihoods.world
     possible = np.ones(likelihoods.worlds, dtype=bool)
     for unit, rows in enumerate(likelihoods.blocks):

@@ -19,10 +19,10 @@ shape (n,)."""
 
 
 def edges_of_rows(grid: QuadratureGrid, possible: Mask, allowed: Allowed | None) -> Floats:
-    """Return between which prior probabilities each value of a grid stands, in each row.
+    """Return the cell edges of the grid in each row, as prior probabilities.
 
-    A unit that was seen running has lives from then on alone: the first value that a row allows
-    begins there, rather than where others do.
+    A unit observed running has a left-truncated posterior: the first allowed cell of a row starts
+    at the truncation point, which differs between rows.
 
     Parameters
     ----------
@@ -61,13 +61,13 @@ _TINY = 1e-300
 
 
 def masses(grid: QuadratureGrid, edges: Floats, worth: Floats) -> Floats:
-    """Return the probability of each cell, to second order in its width as normal scores.
+    """Return the probability of each cell, accurate to second order in its normal-score width.
 
     Parameters
     ----------
     grid : QuadratureGrid
     edges : ndarray, shape (n, g + 1)
-        Between which probabilities each cell stands in each row (`cell_ends.edges_of_rows`).
+        Cell edges of each row, as prior probabilities (`edges_of_rows`).
     worth : ndarray, shape (n, g)
         The density at the centre of each cell of the grid, times the width of that cell.
 
@@ -81,7 +81,7 @@ def masses(grid: QuadratureGrid, edges: Floats, worth: Floats) -> Floats:
     width = np.diff(grid.edges)
     density = worth / width
     mass[:, 1:-1] *= 1 + _curvature(np.diff(special.ndtri(grid.edges)), middle, density)
-    # Of a smooth density, the sum over cells is right without: what some gain, others lose.
+    # For a smooth density the corrections cancel in the sum over cells.
     mass *= worth.sum(axis=1, keepdims=True) / np.maximum(mass.sum(axis=1, keepdims=True), _TINY)
     row, cell = np.nonzero(np.diff(edges) != width)
     mass[row, cell] = _of_moved(edges, grid.edges, middle, density, row, cell)
@@ -89,9 +89,9 @@ def masses(grid: QuadratureGrid, edges: Floats, worth: Floats) -> Floats:
 
 
 def _curvature(width: Floats, middle: Floats, density: Floats) -> Floats:
-    """Return by which share the mean of the density over inner cells exceeds that at its centre.
+    """Return the relative excess of the cell mean of the density over its centre value.
 
-    Nothing where a neighbour is impossible, nor where a cell reaches far into a tail.
+    Only for inner cells; zero where a neighbour is impossible or a cell reaches far into a tail.
     """
     variance = width[1:-1] ** 2 / 12
     variance = np.where(variance < _WIDE, variance, 0.0)
@@ -106,7 +106,7 @@ def _curvature(width: Floats, middle: Floats, density: Floats) -> Floats:
 def _of_moved(
     edges: Floats, old: Floats, middle: Floats, density: Floats, row: Places, cell: Places
 ) -> Floats:
-    """Return the probabilities of cells whose edges moved, as of exponential densities."""
+    """Return the probabilities of cells with moved edges, assuming an exponential density."""
     start, end = edges[row, cell], edges[row, cell + 1]
     shift = (start + end - old[cell] - old[cell + 1]) / 2
     here = density[row, cell]
@@ -119,7 +119,7 @@ def _of_moved(
     slope = np.where(alone, 0.0, slope)
     half = np.nan_to_num(slope * (end - start) / 2).clip(-_STEEPEST, _STEEPEST)
     moved = np.nan_to_num(slope * shift).clip(-_STEEPEST, _STEEPEST)
-    # Of a row narrower than centres are apart, one is met as rarely: right in the mean over rows.
+    # A row narrower than the node spacing rarely contains a node: unbiased in the mean over rows.
     apart = np.gradient(centres(old))[cell]
     length = np.where(alone, np.maximum(end - start, apart), end - start)
     return np.asarray(here * length * np.exp(moved) * (1 + half**2 / 6))
@@ -136,9 +136,9 @@ def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:
     Parameters
     ----------
     edges : ndarray, shape (n, g + 1)
-        The prior probabilities between which each of its values stands, in each row.
+        Cell edges of each row, as prior probabilities.
     worth : ndarray, shape (n, g)
-        The probability of each value (`cell_masses.masses`).
+        The probability of each cell (`masses`).
     at : ndarray, shape (n, q)
         The probabilities of the quantiles of each row.
 
@@ -150,7 +150,7 @@ def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:
     total = above[:, -1:]
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(total > 0, above / total, 1.0)
-        # One search for all rows, each a step higher than the row before.
+        # One search for all rows: each row is offset by one from the row before.
         node = np.searchsorted((share + row).ravel(), at + row) - row * worth.shape[1]
         node = node.clip(0, worth.shape[1] - 1)
         here = worth[row, node]
@@ -162,21 +162,21 @@ def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:
 
 
 def in_order(count: int) -> Floats:
-    """Return numbers between 0 and 1, of which any successive ones are spread evenly."""
+    """Return a low-discrepancy sequence in (0, 1): any consecutive numbers are evenly spread."""
     return np.asarray(np.modf((np.arange(count) + 1) * _GOLDEN)[0])
 
 
 def in_order_of_weight(weights: Floats) -> Floats:
-    """Return numbers between 0 and 1, spread evenly over the rows that count, shape (n,)."""
+    """Return numbers in (0, 1), evenly spread over the rows by weight, shape (n,)."""
     numbers = np.empty(len(weights))
     numbers[np.argsort(-weights, kind="stable")] = in_order(len(weights))
     return numbers
 
 
 def _tilted(within: Floats, edges: Floats, worth: Floats, row: Places, node: Places) -> Floats:
-    """Return places within nodes, 0 to 1, drawn to the side on which the density is higher.
+    """Return positions within cells, 0 to 1, from a linear interpolation of the density.
 
-    Where a neighbour is impossible, the slope is that to the other.
+    Where one neighbour is impossible, the slope towards the other is used.
     """
     sides = [np.clip(node + step, 0, worth.shape[1] - 1) for step in (-1, 1)]
     low, high = (np.where(worth[row, side] > 0, side, node) for side in sides)
@@ -196,16 +196,16 @@ def _length_and_middle(edges: Floats, row: Places, node: Places) -> tuple[Floats
 
 
 class SharedLaw(NamedTuple):
-    """The law, given the inspections, of an input that all units share.
+    """Posterior law of an integrated input that all units share.
 
     Attributes
     ----------
     share : ndarray, shape (g,)
         Probabilities of the values of the grid.
     terms : ndarray, shape (g, terms)
-        At these values.
+        Values of the terms at the grid values.
     scores : ndarray, shape (q,)
-        Normal scores, by the law before the inspections, of its quantiles at `SCORES` given them.
+        Prior normal scores of the posterior quantiles at `SCORES`.
     """
 
     share: Floats
@@ -214,7 +214,7 @@ class SharedLaw(NamedTuple):
 
 
 def shared_law(evidence: Evidence) -> SharedLaw:
-    """Return the posterior law, where each row stands for every inspected unit."""
+    """Return the posterior law if each row represents every inspected unit."""
     share, edges = np.exp(evidence.log_worlds), evidence.grids[0].edges[None]
     of_cells = masses(evidence.grids[0], edges, share)
     places = prior_places(edges, of_cells, special.ndtr(SCORES)[None])[0]
@@ -223,9 +223,9 @@ def shared_law(evidence: Evidence) -> SharedLaw:
 
 
 def pulls_of(unit: int, log_likelihood: Floats, evidence: Evidence, law: SharedLaw) -> Floats:
-    """Return by how much each row moves the terms of the law, as one unit, shape (n, terms).
+    """Return the influence of each row, as one unit, on the terms of the law, shape (n, terms).
 
-    Errors of the law are the means over rows of the sum over units.
+    The sampling error of the law is the mean over rows of the sum over units.
     """
     with np.errstate(invalid="ignore"):
         log_mean = evidence.log_worlds[0] + evidence.log_evidence - evidence.rest[unit][0]

@@ -1,4 +1,4 @@
-"""Likelihood of all inspections of a unit, evaluated for each row that stands for it."""
+"""Likelihood of all inspections of a unit, for each row that represents it."""
 
 from collections.abc import Sequence
 
@@ -18,9 +18,9 @@ from uq.result.result import Result
 class UnitLikelihoods:
     """Likelihoods of the inspected units, given their rows and values of the integrated input.
 
-    A world is what all units share: a sample, or all rows where nothing is shared but the
-    integrated input. Each inspected unit takes rows of its own in each world. What inspections of
-    different units would find in the same rows is computed once.
+    A world is one draw of the inputs that all units share: a sample, or all rows if units share at
+    most the integrated input. Each inspected unit uses separate rows in each world. Observables
+    common to inspections of several units are computed once.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class UnitLikelihoods:
         The independent rows of a result, or samples of several rows.
     inspections : sequence of Inspection
     model_cv : float
-        Of reality about the model, as for `uq.learning.likelihood.log_likelihood`.
+        Coefficient of variation of the model error, see `uq.learning.likelihood.log_likelihood`.
 
     Attributes
     ----------
@@ -39,16 +39,16 @@ class UnitLikelihoods:
     observables : dict of Inspection to Observable
     scale : IntegratedScale or None
     not_integrated : tuple of str
-        Sentences on inputs that scale what was inspected, but do more.
+        Sentences on inputs that scale the observables but also affect other outputs.
     world : ndarray of int, shape (n,)
         Of each row.
     worlds : int
     blocks : list of ndarray of int
-        The rows that stand for each inspected unit.
+        The rows that represent each inspected unit.
     importance : ndarray, shape (n,)
-        Of each row before the inspections.
+        Prior importance weight of each row.
     from_study : ndarray of bool, shape (n,)
-        Which rows were drawn from the laws of the study.
+        Mask of rows drawn from the laws of the study.
 
     Raises
     ------
@@ -89,7 +89,7 @@ class UnitLikelihoods:
         return self.scale is not None and not self.scale.is_own
 
     def log_likelihood(self, unit: int, values: Floats) -> Floats:
-        """Return the logarithm of the likelihood and of what each row counts, shape (rows, g).
+        """Return the log of likelihood times prior importance weight, shape (rows, g).
 
         Values of the integrated input are the same in all rows, shape (g,), or differ.
         """
@@ -99,11 +99,11 @@ class UnitLikelihoods:
         return total
 
     def log_before(self, unit: int) -> Floats:
-        """Return the logarithm of what each row counts before the inspections, shape (rows,)."""
+        """Return the log prior importance weight of each row, shape (rows,)."""
         return self._log_before[self.blocks[unit]]
 
     def of_inspection(self, inspection: Inspection, unit: int, values: Floats) -> Floats:
-        """Return the logarithm of the likelihood of a single inspection, shape (rows, g)."""
+        """Return the log-likelihood of a single inspection, shape (rows, g)."""
         observable, rows = self.observables[inspection], self.blocks[unit]
         if not np.array_equal(values, self._values):
             self._values, self._truths = values, {}
@@ -113,7 +113,7 @@ class UnitLikelihoods:
         return observable.log_likelihood(inspection, self._truths[key], self._cv)
 
     def truth(self, inspection: Inspection, rows: NDArray[np.intp], values: Floats) -> Floats:
-        """Return the true value of what was inspected in some rows, shape (rows, g)."""
+        """Return the model value of the observable in the given rows, shape (rows, g)."""
         observable = self.observables[inspection]
         return observable.truth(inspection.time, rows, self._longer(observable, rows, values))
 
@@ -126,7 +126,7 @@ class UnitLikelihoods:
         )
 
     def bounded(self, unit: int, scale: Floats | None = None) -> Mask:
-        """Return in which rows a censored life leaves open what was seen, shape (rows,).
+        """Return the mask of rows in which censoring leaves the observable unknown, shape (rows,).
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class UnitLikelihoods:
         return is_open
 
     def _longer(self, observable: Observable, rows: NDArray[np.intp], values: Floats) -> Floats:
-        """Return by which factor lives of rows are longer with other values, shape (rows, g)."""
+        """Return the factor by which other input values lengthen the lives, shape (rows, g)."""
         if self.scale is None or observable.name not in self.scale.exponents:
             return np.ones((len(rows), values.shape[-1]))
         ratio = values / self.scale.drawn[rows, None]

@@ -1,4 +1,4 @@
-"""Notice when numba compiles, which may take a while."""
+"""Detect compilation by numba, which may take a while."""
 
 import sys
 from collections.abc import Callable, Iterator

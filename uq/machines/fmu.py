@@ -1,4 +1,4 @@
-"""An FMU as a machine: each row simulates an instance of its own."""
+"""An FMU as a machine: each row simulates a separate instance."""
 
 import hashlib
 import keyword
@@ -84,7 +84,7 @@ def code_of_fmu(path: Path) -> str:
 
 
 def _read(path: Path) -> tuple[FmuFile, Path]:
-    """Return a machine file, by default that of an FMU without one, and the path of the FMU."""
+    """Return the machine file (a default one for a bare FMU) and the path of the FMU."""
     if path.suffix == ".toml":
         file = read_as(FmuFile, path)
         return file, path.absolute().parent / file.machine.fmu
@@ -224,7 +224,7 @@ class _Fmu:
                 raise FmuError(text) from None
 
     def _history(self, unpacked: Path, row: Mapping[str, float], log: list[str]) -> Any:
-        """Return the variables that are wanted over time, from an FMU unpacked for this row.
+        """Return the time history of the requested variables, from an FMU unpacked for this row.
 
         A library in a file of its own shares no memory with that of another row.
         """
@@ -281,8 +281,8 @@ def reduced(output: FmuOutputTable, time: Floats, values: Floats) -> float | Cen
     Returns
     -------
     float or Censored
-        Of a life the time from the start until the variable reaches its level, interpolated between
-        two values; a lower bound where it does not. NaN where a value is not finite.
+        For a life, the time from the start until the variable reaches its level, interpolated
+        between two values; a lower bound if it does not. NaN if a value is not finite.
     """
     if not np.isfinite(values).all():
         return nan

@@ -35,7 +35,7 @@ class FmuTable(TomlTable):
 
 
 class FmuParameterTable(TomlTable):
-    """``[parameters.NAME]``: a parameter; what is left out is as the FMU says."""
+    """``[parameters.NAME]``: a parameter; omitted entries are taken from the FMU."""
 
     variable: Annotated[str, Field(description="by default NAME")] = ""
     nominal: float | None = None
@@ -76,7 +76,7 @@ class FmuOutputTable(TomlTable):
 
 
 class FmuFile(TomlTable):
-    """A machine file of an FMU; without parameters or outputs those that the FMU declares."""
+    """A machine file of an FMU; the parameters and outputs of the FMU are the defaults."""
 
     machine: FmuTable
     parameters: dict[Name, FmuParameterTable] = {}
@@ -84,7 +84,7 @@ class FmuFile(TomlTable):
 
 
 _VERSION = "2.0"
-_UNBOUNDED = 1e300  # written by tools for no bound at all
+_UNBOUNDED = 1e300  # tools write such values for an infinite bound
 
 
 def description_of(path: Path) -> Any:
@@ -137,7 +137,7 @@ def _version_of(path: Path) -> str:
 
 
 def variables_of(description: Any, causality: str = "") -> dict[str, Any]:
-    """Return the real variables of an FMU, all or those of a causality, by name."""
+    """Return the real variables of an FMU by name, optionally of one causality only."""
     return {
         variable.name: variable
         for variable in description.modelVariables
@@ -148,12 +148,12 @@ def variables_of(description: Any, causality: str = "") -> dict[str, Any]:
 def times_of(
     description: Any, stop: float | None, step: float | None
 ) -> tuple[float, float, float]:
-    """Return start, end and step of a simulation [s]: as asked for, else as the FMU says.
+    """Return start, end and step of a simulation [s]: as requested, else defaults of the FMU.
 
     Raises
     ------
     ValueError
-        When the FMU does not say how long, or cannot do such steps.
+        When the FMU has no default end time, or does not support the step.
     """
     experiment = description.defaultExperiment
 
@@ -198,7 +198,7 @@ def _attribute(variable: Any, name: str) -> Any:
 
 
 def cf_unit(unit: str) -> str:
-    """Return a unit as Modelica writes it as a CF string; one of another form as it is.
+    """Convert a Modelica unit to a CF string; other forms are returned unchanged.
 
     Examples
     --------

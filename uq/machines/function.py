@@ -30,7 +30,7 @@ def is_compiled(function: Callable[..., Any]) -> bool:
 class Compiled(RowByRow):
     """A batch that computes rows by a compiled loop; see `RowByRow`.
 
-    A row that raises, or returns an invalid value, is computed once more by itself for its message.
+    A row that raises, or returns an invalid value, is recomputed alone to obtain its message.
     """
 
     def __call__(
@@ -69,8 +69,8 @@ def _loop_of(
 ) -> Callable[..., None] | None:
     """Return a compiled loop over rows.
 
-    None if the function does not return what it should, or if the bits of a row could depend on
-    those computed with it.
+    None if the return type of the function is wrong, or if the result of a row could depend on
+    the rows computed with it.
     """
     import numba
 
@@ -102,7 +102,7 @@ def _loop_of(
 
 
 def _called(function: Any, count: int, place: int | None) -> Any:
-    """Return a compiled function of a row and its seed, which is an argument in some place."""
+    """Return a compiled function of a row and its seed, passed as argument number `place`."""
     import numba
     from numba.np.unsafe import ndarray
 
@@ -120,7 +120,7 @@ def _called(function: Any, count: int, place: int | None) -> Any:
 
 
 def _kept(dims: tuple[int, ...]) -> Any:
-    """Return a compiled function that keeps values, and returns whether their shapes are right."""
+    """Return a compiled function that stores values and returns whether shapes match."""
     import numba
 
     if not dims:
@@ -176,7 +176,7 @@ def machine(
     returns : dict of str to str or Returned, optional
         Output -> its unit, or more about it; the function may then return a tuple in this order,
         as functions compiled by numba do. Without it, the nominal row and the first 64 rows of a
-        study show what is returned.
+        study are run to infer the outputs.
     title : str
         One line; by default the first line of the docstring.
     version : str
@@ -215,7 +215,7 @@ def machine(
 
 
 def is_machine(candidate: object) -> bool:
-    """Whether something was declared by `machine`."""
+    """Whether an object was declared by `machine`."""
     return isinstance(getattr(candidate, _MARK, None), tuple)
 
 
@@ -226,7 +226,7 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     ----------
     function : callable
     returned : dict of str to Returned, optional
-        What it returns, where it does not declare it. Without either, the model has no outputs.
+        Outputs, if it does not declare them. Without either, the model has no outputs.
 
     Raises
     ------
@@ -246,7 +246,7 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
 
 
 def _plain(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the function as it was written, without wrappers and compiler."""
+    """Return the original Python function, without wrappers and compiler."""
     return inspect.unwrap(getattr(function, "py_func", function))
 
 

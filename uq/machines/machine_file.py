@@ -55,7 +55,7 @@ def data_of(path: Path) -> dict[str, Any]:
 
 
 def content_of(path: Path) -> bytes:
-    """Return a machine file as it is identified: without a byte-order mark, lines ended by LF."""
+    """Return the normalised content of a machine file: no byte-order mark, LF line ends."""
     return path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
 
 
@@ -77,7 +77,7 @@ def read_as(kind: type[T], path: Path) -> T:
 
 
 def _keys(file: type[BaseModel], place: Sequence[Any]) -> tuple[str, list[str]]:
-    """Return the allowed keys in place of an unknown key: kind and names."""
+    """Return the allowed keys at the position of an unknown key: kind and names."""
     table: Any = file
     if len(place) > 1:
         table = file.model_fields[place[0]].annotation
@@ -137,7 +137,7 @@ class ParameterTable(TomlTable):
 
 
 class OutputTable(TomlTable):
-    """``[outputs.NAME]``: a result, and where it stands: by json, csv, netcdf or pattern."""
+    """``[outputs.NAME]``: a result and its location: by json, csv, netcdf or pattern."""
 
     unit: str = "1"
     meaning: str = ""
@@ -276,7 +276,7 @@ def _faults(machine_file: MachineFile, folder: Path) -> Iterator[InputFault]:
 
 
 def _program_problem(program: str, folder: Path) -> str:
-    """Return why a program cannot be started, as far as its file shows it; "" if it can."""
+    """Return why a program cannot be started, judged by its file; "" if it can."""
     program = program.replace(f"{{{FOLDER}}}", str(folder.absolute()))
     path = folder / program
     if re.search(_PLACE % r"\w+", program) or ("/" not in program and shutil.which(program)):

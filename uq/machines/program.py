@@ -1,4 +1,4 @@
-"""Program as a machine, each row in a folder of its own, and the choice between it and an FMU."""
+"""Program as a machine, each row in a separate folder; selection of program or FMU."""
 
 import errno
 import hashlib
@@ -38,7 +38,7 @@ from uq.machines.row_resources import Folders, bound_files, end_descendants, end
 
 _LAST = 300  # characters of the last line of a failed program
 _LOOK_SECONDS = 1.0  # between looks at the size of a folder
-_TRIES = 3  # of a program that is killed, before it is blamed
+_TRIES = 3  # of a killed program, before the row is marked as failed
 _SEEDS = 2**31 - 1  # many programs take more for the largest of 32 bits, and 0 for the clock
 _KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # the program, or the last command of a shell
 _REMEDIES = {

@@ -23,7 +23,7 @@ from uq.text.literals import read_number
 LONGEST = 100_000_000
 """Bytes of a text that is searched for a result."""
 
-_SEARCH_SECONDS = 10.0  # some patterns try more ways than there is time
+_SEARCH_SECONDS = 10.0  # some patterns need exponential time
 
 _SHOWN = 60  # characters of a text that is no number
 
@@ -74,7 +74,7 @@ def _in_json(text: str, path: str) -> Any:
 
 
 def _number(value: Any) -> Any:
-    """Return numbers, which may be written as text: ``"inf"``, as JSON has no infinity."""
+    """Convert numbers written as text, such as ``"inf"``, since JSON has no infinity."""
     if isinstance(value, list):
         return [_number(element) for element in value]
     if not isinstance(value, str | int | float):
@@ -83,7 +83,7 @@ def _number(value: Any) -> Any:
 
 
 def _real(text: str) -> float:
-    """Return a number written as text, also as Fortran does: ``1.5D+03``."""
+    """Parse a number, also in the format of Fortran: ``1.5D+03``."""
     if "_" in text:  # in numbers only Python reads it
         raise ValueError(f"no number: '{text[:_SHOWN]}'")
     if re.fullmatch(r"\s*[-+.\d]+[dD][-+]?\d+\s*", text):
@@ -123,8 +123,8 @@ def _last_match(text: str, pattern: str) -> list[str]:
     Raises
     ------
     ValueError
-        When the search takes too long. A signal ends it in the main thread; no other thread gets
-        one, nor the interpreter, so a process of its own searches then.
+        When the search takes too long. In the main thread a signal ends it. Other threads receive
+        no signals, so they search in a separate process.
     """
     sentence = f"its pattern {pattern} takes too long to search for"
     if threading.current_thread() is threading.main_thread():

@@ -27,7 +27,7 @@ def censored(time: float) -> Censored:
     Parameters
     ----------
     time : float
-        How long it is known to last at least.
+        Lower bound of the life.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def censored(time: float) -> Censored:
 
 @dataclass(frozen=True)
 class Returned:
-    """One thing that a machine returns.
+    """Declaration of an output of a machine.
 
     Attributes
     ----------
@@ -128,13 +128,13 @@ def _is_shape(shape: Any) -> bool:
 
 
 class RowError(Exception):
-    """Why a row has no values, in a sentence, and the status that it gets.
+    """Failure of a row, with a sentence for the user and the status of the row.
 
     Parameters
     ----------
     message : str
     status : Status
-        By default that of a value which a machine must not return.
+        By default the status of an invalid returned value.
     """
 
     def __init__(self, message: str, status: Status = Status.BAD_SHAPE):
@@ -143,7 +143,7 @@ class RowError(Exception):
 
 
 def numbers_of(value: Any, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Return a value as an array of floats, and which of them are `censored`.
+    """Return a value as an array of floats, and the mask of `censored` elements.
 
     Raises
     ------
@@ -178,7 +178,7 @@ def _plain(element: Any) -> Any:
 
 
 def seen_in(row: Any) -> dict[str, Returned]:
-    """Return the outputs that a row shows: names, shapes, and lives that are ``inf`` or `censored`.
+    """Infer outputs from a row: names, shapes, and lives that are ``inf`` or `censored`.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def seen_in(row: Any) -> dict[str, Returned]:
 
 
 def joined(rows: Sequence[Mapping[str, Returned]]) -> dict[str, Returned]:
-    """Return the outputs that rows show together: names and shapes of the first, lives of any."""
+    """Merge the outputs inferred from rows: names and shapes of the first, lives of any."""
     return {
         name: replace(first, life=any(name in row and row[name].life for row in rows))
         for name, first in rows[0].items()
@@ -222,15 +222,14 @@ def from_plain(data: Mapping[str, Mapping[str, Any]]) -> dict[str, Returned]:
 def checked(
     returned: Any, expected: Mapping[str, Returned]
 ) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.bool_]]]:
-    """Yield name, numbers and which of them are censored, of each output of a row.
+    """Yield name, numbers and censoring mask of each output of a row.
 
     A tuple has the outputs in the order of `expected`, for compiled functions without dicts.
 
     Raises
     ------
     RowError
-        When the row returns anything else than `expected`, or a number is NaN that may not be, or
-        -inf.
+        When the outputs differ from `expected`, or a number is -inf or an unexpected NaN.
     """
     if isinstance(returned, tuple) and len(returned) == len(expected):
         returned = dict(zip(expected, returned, strict=True))

@@ -19,7 +19,7 @@ from uq.sampling.input_faults import unknown
 from uq.text.quantities import fault_of_unit
 
 SEED = "seed"
-"""The name by which the seed of a row is wanted."""
+"""Name of the argument that receives the seed of a row."""
 
 _TAKEN = (
     "row replicate group block world unit repeat status rerun".split()  # of a result itself
@@ -128,7 +128,7 @@ class _NoSettings:
 
 @dataclass(frozen=True)
 class RowByRow:
-    """A batch that computes rows one after the other, each with its own end.
+    """A batch that computes rows one after the other, each with its own status.
 
     Attributes
     ----------
@@ -159,7 +159,7 @@ class RowByRow:
 
     @property
     def stops_rows(self) -> bool:
-        """Whether it can stop a row whose time is over."""
+        """Whether it can stop a row at its time limit."""
         return hasattr(self.function, "row_limit")
 
     def limited(self, seconds: float) -> Self:

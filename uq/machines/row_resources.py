@@ -1,4 +1,4 @@
-"""Resources of a row of a program: processes, which end with it, and its folder."""
+"""Resources of a row of a program: its folder, and child processes, which end with it."""
 
 import ctypes
 import hashlib
@@ -28,7 +28,7 @@ _judge = os.getpid()
 
 
 def adopt() -> None:
-    """Become, on Linux, the parent of all descendants whose own parent ends.
+    """Become the parent of orphaned descendants (child subreaper, Linux only).
 
     For a process whose descendants all belong to rows, so that `end_descendants` may end them.
     """
@@ -40,7 +40,7 @@ def adopt() -> None:
 
 
 def judge() -> int:
-    """Return the process that keeps or removes the folder of a row that ends this process."""
+    """Return the process that keeps or removes the folder if a row crashes this process."""
     return _judge if _adopting else os.getpid()
 
 
@@ -67,7 +67,7 @@ def bound_files(folder: Path) -> int:
 
 
 def ended_within(process: subprocess.Popen[bytes], seconds: float) -> bool:
-    """Wait for a process, for some seconds at most; return whether it has ended."""
+    """Wait for a process up to a time limit; return whether it has ended."""
     seconds = max(seconds, 0.0)
     if sys.platform == "linux":
         with suppress(OSError):
@@ -79,7 +79,7 @@ def ended_within(process: subprocess.Popen[bytes], seconds: float) -> bool:
             finally:
                 os.close(descriptor)
     try:
-        process.wait(seconds)  # elsewhere it looks again and again, ever more seldom
+        process.wait(seconds)  # on other systems it polls with increasing intervals
     except subprocess.TimeoutExpired:
         return False
     return True
@@ -209,7 +209,7 @@ class Folders:
         return self.root / f"failed-{_digest(numbers)}"
 
     def keep(self, numbers: Sequence[float | int]) -> Path | None:
-        """Keep the folder of a row with which a child of this process ended; return its place."""
+        """Keep the folder of a row that ended a child of this process; return its path."""
         kept = self.kept(numbers)
         for folder in self.root.glob(f"{_running_on_this()}{os.getpid()}-*-{_digest(numbers)}-*"):
             self._keep(folder, numbers)

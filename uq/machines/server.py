@@ -1,4 +1,4 @@
-"""A model on a UM-Bridge server as a machine: each row is a call of its own."""
+"""A model on a UM-Bridge server as a machine: each row is a separate call."""
 
 import hashlib
 import json
@@ -27,7 +27,7 @@ _turns = count(os.getpid())  # of several servers, each process begins with anot
 
 @dataclass(frozen=True)
 class _RemoteModel:
-    """A model as its servers describe it; called with a row, it asks them for the outputs."""
+    """A model as described by its servers; calling it with a row requests the outputs."""
 
     servers: tuple[str, ...]
     name: str
@@ -138,7 +138,7 @@ def server_model(address: str) -> Model:
 
 
 def code_of_server(address: str) -> str:
-    """Return a hash of the description of a model by its server: its code cannot be seen."""
+    """Return a hash of the description of a model by its server, as its code is not accessible."""
     remote = _remote_model(address.partition(",")[0])
     sizes = remote.inputs, remote.outputs
     text = json.dumps([remote.name, VERSION, *sizes, remote.information], sort_keys=True)
@@ -192,7 +192,7 @@ def _bounds(low: float | None, high: float | None) -> tuple[float, float]:
 
 
 def _numbers(output: list[list[float | None]], never: Any) -> list[list[float]]:
-    """Return vectors with infinity for their null numbers that are never reached, else NaN."""
+    """Return vectors with null replaced by infinity for lives that never end, else by NaN."""
     places: Any = never if isinstance(never, list) else [()] * len(output)
     return [
         [(inf if i in at else nan) if value is None else value for i, value in enumerate(vector)]

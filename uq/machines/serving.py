@@ -1,4 +1,4 @@
-"""Model offered to others by the protocol of UM-Bridge; see `uq.machines.um_bridge`."""
+"""Server that offers a model by the protocol of UM-Bridge; see `uq.machines.um_bridge`."""
 
 import json
 import re
@@ -151,7 +151,7 @@ def json_server(
 
 
 def finite(values: Any) -> Any:
-    """Return numbers in nested lists with None for those that JSON has no number for."""
+    """Return numbers in nested lists, with None for infinity and NaN, as JSON lacks them."""
     if isinstance(values, list | tuple):
         return [finite(value) for value in values]
     return values if isfinite(values) else None

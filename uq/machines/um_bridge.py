@@ -34,7 +34,7 @@ NEVER = "never"
 
 _LONGEST = 100_000_000  # bytes of an answer
 _PART = 1_000_000  # of it, read at once
-_PATIENCE = 60.0  # seconds for which a server that does not answer is asked again
+_PATIENCE = 60.0  # seconds of retries to a server that does not answer
 _PAUSES = (0.1, 0.3, 1.0, 3.0)
 
 _OUT_SECONDS = 10.0  # for which others are asked before a server that did not answer
@@ -86,9 +86,8 @@ def call(
     body : object, optional
         What is sent; nothing is asked for by GET.
     patience : float, optional
-        How long it is asked again if it does not answer [s], by default a minute. A server that
-        has not answered for so long is asked only once from then on, until it answers: else each
-        row would wait.
+        Duration of retries if the server does not answer [s], by default a minute. After that, the
+        server is asked only once per call until it answers, so that not every row waits.
     limit : float
         How long the call may take [s].
 
@@ -151,7 +150,7 @@ def _answer(server: str, request: str, body: Any, until: float) -> Any:
 def cut_after(
     seconds: float | None, connection: socket.socket, how: int = socket.SHUT_RDWR
 ) -> Iterator[Timer]:
-    """Cut a connection after some seconds, however little comes through it at a time.
+    """Close a connection after a time limit, even if data still arrives slowly.
 
     Parameters
     ----------

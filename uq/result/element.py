@@ -14,7 +14,7 @@ from uq.text.element_names import places as places
 
 
 class RowLaw(Protocol):
-    """The law of a life in each row, given all that does not scale it."""
+    """Conditional law of a life in each row, given the inputs that are not integrated."""
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -22,7 +22,7 @@ class RowLaw(Protocol):
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the logarithms of lives that this causes."""
+        """Standard deviation of log lives due to the integrated inputs."""
 
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,), from its life; 0 where that is NaN."""
@@ -43,15 +43,15 @@ class Element:
     place : dict of str to object
         Dimension -> coordinate; empty for an output without dimensions.
     values : ndarray, shape (n,)
-        NaN where there is no value; +inf for a life that never ends.
+        NaN where missing; +inf for a life that never ends.
     censored : ndarray of bool, shape (n,)
         Where the value is only a lower bound.
     failed : ndarray of bool, shape (n,)
         Where the value is missing because the row failed.
     law : RowLaw, optional
-        Of what scales a life, given all that does not: each row then is the law of a life.
+        Conditional law of the life in each row, if the inputs that scale it are integrated.
     weights : ndarray, shape (n,), optional
-        Of the rows, where they stand for another study or for what inspections left of theirs.
+        Weights of the rows, if they represent a posterior or another study.
     most : float
         The largest weight that a row can have.
     """
@@ -79,7 +79,7 @@ class Element:
 
     @property
     def is_lifetime(self) -> bool:
-        """Whether it is the time until an event."""
+        """Whether the output is the time until an event."""
         return self.declared.is_lifetime
 
     @property
@@ -89,12 +89,12 @@ class Element:
 
     @property
     def for_thresholds(self) -> Floats:
-        """The values, or of an angle their magnitudes, shape (n,)."""
+        """The values, for an angle their magnitudes, shape (n,)."""
         return self.declared.for_thresholds(self.values)
 
     @property
     def undefined(self) -> Mask:
-        """Where the row is sound but the value is undefined."""
+        """Mask of valid rows whose value is undefined."""
         return np.isnan(self.values) & ~self.failed
 
     @property
@@ -108,17 +108,17 @@ class Element:
         return ~np.isnan(self.values)
 
     def unknown_sides(self, threshold: float) -> Mask:
-        """Return where rows were censored below a threshold, so that their side is unknown."""
+        """Return the mask of rows censored below a threshold, whose side is unknown."""
         return self.censored & (self.values < threshold)
 
     @property
     def is_plain(self) -> bool:
-        """Whether each row counts once, with an exact life."""
+        """Whether rows are unweighted and have exact values, not conditional laws."""
         return self.law is None and self.weights is None
 
     @property
     def plain(self) -> "Element":
-        """The same rows with the lives that were computed."""
+        """The same rows with their computed lives instead of conditional laws."""
         return replace(self, law=None)
 
     def below(self, threshold: float, signed: bool = False) -> Floats:

@@ -35,9 +35,10 @@ from uq.text.element_names import MOST_PLACES, Place, is_whole, place_of, whole_
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
-    """Return the rows for plain statistics: blocks A and B of a crossed design, all rows of others.
+    """Return the rows for plain statistics: blocks A and B of a crossed design, else all rows.
 
-    The other blocks repeat the values of A and B. No row is returned where `why_no_statistics`.
+    The other blocks repeat the values of A and B. No row is returned if `why_no_statistics` gives a
+    reason.
 
     Raises
     ------
@@ -64,8 +65,8 @@ def why_no_statistics(ds: xr.Dataset) -> str:
 def replicates_of(rows: xr.Dataset) -> Replicates:
     """Return the replicate of each row, or None if the rows are independent.
 
-    Where samples have several rows, `Clusters`: of independent samples, the sample of each row.
-    Also where inspections of all rows together have weighted them.
+    If samples have several rows, return `Clusters`: the sample of each row. The same applies if
+    inspections have weighted all rows jointly.
     """
     together = LAW_PULLS in rows.variables
     if not is_nested(rows) and not together:
@@ -87,7 +88,7 @@ def inputs_of(rows: xr.Dataset) -> Floats:
 
 
 def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> SharedInfluence:
-    """Return the influence of the law of an input that all units share, in weighted rows."""
+    """Return the influence of weighted rows on the posterior law of a shared input."""
     pulls = rows[LAW_PULLS]
     scaled_pulls = pulls.values * (len(part) / pulls.attrs[ROWS])
     return SharedInfluence(scaled_pulls, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
@@ -213,7 +214,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> 
 def _elements_at(
     ds: xr.Dataset, output: str, where: Callable[[Mapping[str, Any]], Iterable[Place]]
 ) -> Iterator[Element]:
-    """Yield elements of an output, unless it is a category; `where` picks their places on axes."""
+    """Yield elements of an output, unless it is a category; `where` selects coordinates."""
     outputs, flag = outputs_of(ds), censored_name(output)
     if output not in outputs:
         raise InputError(

@@ -1,8 +1,8 @@
-"""Samples, units and repeats: which rows of a result belong together, and which rank inputs.
+"""Nested design: samples, units and repeats, and the rows used for sensitivity indices.
 
-Of a study with ``units`` or ``repeats`` each sample is a world: units that share its ``shared``
-inputs, each with ``own`` inputs of its own, each computed in several repeats that differ by chance.
-Samples are independent, their rows are not.
+In a study with ``units`` or ``repeats`` each sample is a world: its units have the same ``shared``
+inputs and individual ``own`` inputs, and each unit is computed in several repeats that differ only
+by random seeds. Samples are independent, rows within a sample are not.
 """
 
 from typing import NamedTuple
@@ -17,14 +17,14 @@ from uq.text.numbers import counted, grouped
 
 
 class Nesting(NamedTuple):
-    """The places of rows in samples, units and repeats; each row of a plain design is a sample.
+    """Indices of rows in samples, units and repeats; in a plain design each row is a sample.
 
     Attributes
     ----------
     samples : int
-        Number of samples that have rows here, those of all replicates.
+        Number of samples with rows here, over all replicates.
     units, repeats : int
-        Of each sample, of each unit.
+        Units per sample, repeats per unit.
     sample : ndarray of int, shape (n,)
         The sample of each row, from 0 to ``samples - 1``.
     unit, repeat : ndarray of int, shape (n,)
@@ -66,7 +66,7 @@ class Nesting(NamedTuple):
 
 
 def nesting_of(ds: xr.Dataset) -> Nesting:
-    """Return the places of the rows of a result in samples, units and repeats.
+    """Return the indices of the rows of a result in samples, units and repeats.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def size_in_words(samples: int, units: int, repeats: int) -> str:
 
 
 def samples_have(count: int) -> str:
-    """Return the beginning of a sentence: ``1 sample has``, ``2 samples have``."""
+    """Return subject and verb of a sentence: ``1 sample has``, ``2 samples have``."""
     return counted(count, "sample has", "samples have")
 
 
@@ -112,7 +112,7 @@ def is_nested(ds: xr.Dataset) -> bool:
 
 
 def one_of_each_sample(ds: xr.Dataset) -> xr.Dataset:
-    """Return the first repeat of the first unit of each sample: rows that follow a plain design."""
+    """Return the first repeat of the first unit of each sample: rows of a plain design."""
     if not is_nested(ds):
         return ds
     return ds.isel(row=(ds["unit"].values == 0) & (ds["repeat"].values == 0))
@@ -126,7 +126,7 @@ def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
 
 
 RANKED = 50_000
-"""Rows by which inputs are ranked where a design is larger: more hardly change their order."""
+"""Maximum number of rows used for ranking inputs: more hardly change their order."""
 
 
 def ranked_rows(ds: xr.Dataset) -> xr.Dataset:
@@ -139,8 +139,8 @@ def ranked_rows(ds: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The first samples of a large plain design, and as many imported rows at random, since these
-        may come in a meaningful order; else `ds` itself, also of a design that compares rows.
+        The first samples of a large plain design, or as many random rows if they are imported, as
+        their order may be meaningful; else `ds` itself, also for a design that compares rows.
     """
     samples, rows = int(ds.attrs["samples"]), ds.sizes["row"]
     design = DESIGNS[ds.attrs["design"]]

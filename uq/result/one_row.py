@@ -30,7 +30,7 @@ class Row(NamedTuple):
     columns : dict of str to ndarray, shape (1, *dims)
     status : ndarray of int8, shape (1,)
     failures : dict of str to str
-        Status label -> what happened.
+        Status label -> failure message.
     """
 
     model: Model
@@ -53,7 +53,7 @@ class Row(NamedTuple):
 
     @property
     def ending(self) -> tuple[Status, str]:
-        """The status, and its explanation in words."""
+        """The status of the row and its explanation."""
         status = Status(self.status.item())
         return status, self.failures.get(status.label, status.meaning)
 

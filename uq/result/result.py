@@ -1,4 +1,4 @@
-"""A result: the Dataset of its rows with everything that its attributes declare, read once."""
+"""A result: the Dataset of its rows, with its attributes parsed once."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -53,7 +53,7 @@ from uq.text.units import ReadableUnit, typical, unit_of
 
 
 class Result:
-    """The rows of a study with their outputs: a Dataset, and what its attributes mean.
+    """A Dataset of the rows of a study with their outputs, and its parsed attributes.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class Result:
         return self.dataset.sizes["row"]
 
     def take(self, rows: slice | Sequence[int] | NDArray[Any]) -> "Result":
-        """Return some rows: a slice, a mask or their places."""
+        """Return the selected rows: a slice, a mask or positions."""
         return Result(self.dataset.isel(row=rows))
 
     # The study and its design
@@ -182,7 +182,7 @@ class Result:
 
     @property
     def notes_on_places(self) -> list[str]:
-        """A sentence on each output of which only some elements are shown."""
+        """Sentences on outputs with only selected elements shown."""
         return [
             f"{name}: shown at evenly spread places, as it has {size} elements; name it in"
             " [analysis] outputs for all of them"
@@ -268,7 +268,7 @@ class Result:
 
     @property
     def stands_for_any_unit(self) -> bool:
-        """Whether rows stand for any unit: no inspection concerns the units."""
+        """Whether rows represent any unit: no inspection concerns the units."""
         return stand_for_any_unit(self.dataset)
 
     def refuse_weights(self, question: str) -> None:
@@ -284,7 +284,7 @@ class Result:
 
     @cached_property
     def nesting(self) -> Nesting:
-        """The places of rows in samples, units and repeats."""
+        """The indices of rows in samples, units and repeats."""
         return nesting_of(self.dataset)
 
     @property
@@ -298,7 +298,7 @@ class Result:
         return {name: level for name, (_, level) in self._leaders.items()}
 
     def levels_that_vary(self, without: Collection[str] = ()) -> Sequence[str]:
-        """Return the levels on which rows differ; a random model differs by chance.
+        """Return the levels on which rows vary; a random model also varies by its seeds.
 
         Parameters
         ----------
@@ -383,4 +383,4 @@ class Result:
 
 
 AnyResult = Result | xr.Dataset | str | Path
-"""What public functions take for a result."""
+"""Types accepted as a result by public functions."""

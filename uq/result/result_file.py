@@ -51,7 +51,7 @@ _NEAR = 3  # folders: the current one, the result's, and the one above
 
 
 def named(ds: xr.Dataset, file: str) -> xr.Dataset:
-    """Return a result whose commands name this file."""
+    """Return a result with the file name to use in suggested commands."""
     ds.encoding[_FILE] = file
     return ds
 
@@ -62,7 +62,7 @@ def file_of(ds: xr.Dataset) -> str:
 
 
 def with_model(ds: xr.Dataset, reference: str) -> xr.Dataset:
-    """Return a result whose commands name its model as the user did."""
+    """Return a result with the model reference to use in suggested commands."""
     ds.encoding[_MODEL] = without_returns(reference)
     return ds
 
@@ -220,7 +220,7 @@ def _opened(path: Path) -> xr.Dataset:
         raise InputError(f"{path}: {error.strerror or 'not a readable netCDF file'}") from None
     try:
         with warnings.catch_warnings(action="ignore"):  # they would print names from the file
-            # No cache: a large result, read on use, does not come to be in memory bit by bit.
+            # No cache: a large result is read lazily and must not accumulate in memory.
             ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
         if ds.nbytes > most_bytes(path):
             ds.close()
@@ -234,14 +234,14 @@ def _opened(path: Path) -> xr.Dataset:
 
 
 def _of_the_system(error: Exception) -> str:
-    """Return why a file cannot be read; numbers of errors of netCDF itself are negative."""
+    """Return why a file cannot be read; error numbers of netCDF are negative."""
     if isinstance(error, OSError) and (error.errno or 0) > 0:
         return f"cannot be read: {error.strerror}"
     return "not a readable netCDF file"
 
 
 def _legible(ds: xr.Dataset) -> xr.Dataset:
-    """Return a Dataset whose texts cannot control a terminal."""
+    """Return a Dataset with terminal control characters removed from its texts."""
     owners: list[Any] = [ds, *ds.variables.values()]
     for owner in owners:
         for name, value in owner.attrs.items():
@@ -257,7 +257,7 @@ def _legible(ds: xr.Dataset) -> xr.Dataset:
 
 
 def upgraded(ds: xr.Dataset) -> xr.Dataset:
-    """Return a result in the names of this schema version.
+    """Convert a result to the names of this schema version.
 
     In version 1 the dimension of rows was ``sample``, and ``units`` their number in each sample.
     """
@@ -313,7 +313,7 @@ def refuse_empty(ds: xr.Dataset) -> None:
 
 
 def failed(ds: xr.Dataset) -> Mask:
-    """Return which rows of a result failed, shape (n,), by the rule of `failed_rows`."""
+    """Return the mask of failed rows of a result, shape (n,), see `failed_rows`."""
     required = (
         (output, ds[name].values)
         for name, output in outputs_of(ds).items()

@@ -1,4 +1,4 @@
-"""Choice of a row of a result, and this row as plain numbers."""
+"""Selection of a row of a result, and its values as plain numbers."""
 
 from collections import namedtuple
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ class Choice(NamedTuple):
     ----------
     number : int
     words : str
-        Why this one.
+        Reason for the selection.
     """
 
     number: int
@@ -99,7 +99,7 @@ def near_quantile_row(result: Result, probability: float, name: str) -> Choice:
     Returns
     -------
     Choice
-        One of the rows that the quantile in a summary rests on.
+        One of the rows that determine the quantile in a summary.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def near_quantile_row(result: Result, probability: float, name: str) -> Choice:
 
 
 def _ordered(result: Result, name: str) -> Iterator[tuple[Element, NDArray[np.intp]]]:
-    """Yield elements, each with the places of its rows, lowest first: ended, censored, never."""
+    """Yield elements with ascending row positions: ended lives, then censored, then infinite."""
     unsound = result.failed
     has_values = False
     for element in result.named_elements(name):
@@ -156,7 +156,7 @@ def _rank(element: Element, place: int) -> tuple[bool, bool, float]:
 
 
 def place_of(result: Result, number: int) -> int:
-    """Return the place in a result of the row with a number.
+    """Return the position in a result of the row with the given number.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def stored_row(result: Result, place: int) -> Row:
     Returns
     -------
     Row
-        Its model declares what the result says, and cannot compute; its seed is 0.
+        Its model has the declarations of the result and cannot compute; its seed is 0.
     """
     stored = result.take([place])
     row, attrs = stored.dataset.load(), stored.dataset.attrs
@@ -216,5 +216,5 @@ class _Nothing:
 
 
 def _refused(*arguments: Any) -> NoReturn:
-    """Stand in for the batch function: rows of a result are shown, never computed."""
+    """Replace the batch function: rows of a result are only shown, never computed."""
     raise NotImplementedError("this model only describes a result")

@@ -20,7 +20,7 @@ _ROUNDING = 1e-9  # relative, of an input that scales lives and was moved by ins
 
 
 def value_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield which inputs, outputs and coordinates have values that no run leaves behind."""
+    """Yield inputs, outputs and coordinates with values that no run produces."""
     for name, variable in ds.data_vars.items():
         role = variable.attrs.get("role")
         if role == "fixed" and np.isnan(variable.values):
@@ -144,7 +144,7 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _place_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield the faults of the numbers of rows and their places in the design."""
+    """Yield the faults of row numbers and design indices."""
     numbers = ds["row"].values
     if numbers.dtype.kind not in "iu" or (np.diff(numbers) <= 0).any() or numbers[0] < 0:
         yield "'row' does not number the rows in order"
@@ -157,7 +157,7 @@ def _place_faults(ds: xr.Dataset) -> Iterator[str]:
 
 
 def _repeated_places(ds: xr.Dataset) -> str:
-    """Return a fault if rows share a place in the design, else ""; added rows may share one."""
+    """Return a fault if design indices are duplicated, else ""; added rows are exempt."""
     if has_rounds(ds):
         return ""
     place = np.zeros(ds.sizes["row"], dtype=np.int64)
@@ -187,7 +187,7 @@ def _is_table(text: Any) -> bool:
 
 
 def _study_faults(ds: xr.Dataset) -> Iterator[str]:
-    """Yield which inputs and outputs of the study are not in the result."""
+    """Yield inputs and outputs of the study that are missing from the result."""
     try:
         study = read_toml(ds.attrs["study"])
     except (ValueError, OverflowError, RecursionError):
@@ -213,7 +213,7 @@ def _table(tables: Any, key: str) -> dict[str, Any]:
 
 
 def _attribute_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
-    """Yield which optional attributes of a variable are of a wrong type, shape or range."""
+    """Yield optional attributes of a variable with a wrong type, shape or range."""
     attrs = variable.attrs
     admissible: Any = attrs.get("admissible", (-np.inf, np.inf))
     if not _are_numbers(admissible, 2) or not admissible[0] <= admissible[1]:

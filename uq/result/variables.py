@@ -118,7 +118,7 @@ def coordinates(model: Model, settings: Any) -> dict[str, Any]:
 
 
 def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> dict[str, Any]:
-    """Return the place of each row in the design, as coordinates."""
+    """Return the design indices of each row, as coordinates."""
     along = ("row",)
     numbers = np.arange(len(rows.x)) if numbers is None else numbers
     block = {"long_name": "block of the design"} | _flags(block_labels(study), np.int16)

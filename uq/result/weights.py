@@ -1,4 +1,4 @@
-"""Rows that inspections have weighted: the variables of their weights, and checks of these."""
+"""Posterior weights of rows: their variables in a result, and checks of them."""
 
 import json
 from collections.abc import Iterator
@@ -15,23 +15,23 @@ WEIGHT = "weight"
 """The variable with the weight of each row."""
 
 ONLY_INSPECTED = "only_inspected"
-"""Attribute of a result: why no row stands for a unit that was not inspected."""
+"""Attribute of a result: why no row represents an uninspected unit."""
 
 OF_UNIT = "of_unit"
-"""Attribute of a result: the inspected unit that all its rows stand for."""
+"""Attribute of a result: the inspected unit that all its rows represent."""
 
 SCALE_SCORES, INPUT = "scale_scores", "input"
-"""The variable of rows of an inspected unit with the law of the integrated input in each, and its
-attribute: which input."""
+"""Variable with the law of the integrated input in each row of an inspected unit, and its attribute
+with the name of the input."""
 
 LAW_PULLS, LAW_FOLLOWS, ROWS = "learnt_law_pulls", "learnt_law_follows", "rows"
 LAW_SCORES = "learnt_law_scores"
 """Variables of each row, if all units share the integrated input
 (`uq.stats.clusters.SharedInfluence`);
-the attribute of the first: of how many rows they are; and quantiles of the law."""
+attribute of the first: the number of rows; and quantiles of the law."""
 
 MOST = "largest_possible"
-"""Its attribute: the largest weight that a row can have, if it is recorded."""
+"""Attribute of the weights: upper bound of the weight of a row, if recorded."""
 
 
 UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
@@ -41,17 +41,16 @@ UNIT_PULLS, INSPECTED = "unit_law_pulls", "inspected"
 
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
 MODEL_ERROR, NEW_ROWS, WORLDS = "model_error", "new_rows", "worlds"
-"""Attributes of a result: what the inspections were, and how they were used."""
+"""Attributes of a result: model error, number of new rows and worlds of the update."""
 
 IMPORTANCE, ROUND = "importance", "round"
-"""Variables of each row, if a sampler has added rows to those of a design: how much it counts
-before any inspection, of mean 1 in expectation; and the round in which it was drawn, 0 by the
-design."""
+"""Variables of each row, if a sampler has added rows to a design: prior importance weight, with
+expectation 1; and the sampling round, 0 for rows of the design."""
 
 OWN_SIZE = "own_samples_and_replicates"
-"""Attribute of a result: of the design, without the rows that a sampler has added."""
+"""Attribute of a result: samples and replicates of the design, without added rows."""
 
-_SAME = 1e-9  # relative difference of weights that only rounding tells apart
+_SAME = 1e-9  # relative difference of weights attributed to rounding
 
 
 def has_weights(ds: xr.Dataset) -> bool:
@@ -60,7 +59,7 @@ def has_weights(ds: xr.Dataset) -> bool:
 
 
 def has_rounds(ds: xr.Dataset) -> bool:
-    """Whether a sampler has added rows to those of a design; replicates are its repetitions."""
+    """Whether a sampler has added rows to a design; replicates are then its repetitions."""
     return ROUND in ds.variables and ds[ROUND].attrs.get("role") == IMPORTANCE
 
 
@@ -81,12 +80,12 @@ def row_weights(ds: xr.Dataset) -> Floats | None:
 
 
 def largest_weight(ds: xr.Dataset) -> float:
-    """Return the largest weight that a row can have, infinite if it is not recorded."""
+    """Return the upper bound of the weight of a row, infinite if not recorded."""
     return float(ds[WEIGHT].attrs.get(MOST, np.inf)) if has_weights(ds) else np.inf
 
 
 def stand_for_any_unit(ds: xr.Dataset) -> bool:
-    """Return whether rows stand for any unit: no inspection concerns the units of a result."""
+    """Return whether rows represent any unit: no inspection concerns the units of a result."""
     return not has_weights(ds) or not (ds.attrs.keys() & {OF_UNIT, ONLY_INSPECTED})
 
 
@@ -110,7 +109,7 @@ def sample_weights(rows: xr.Dataset, place: Nesting, question: str) -> Floats | 
     Raises
     ------
     InputError
-        When rows stand for inspected units, or units of a sample have different weights.
+        When rows represent inspected units, or units of a sample have different weights.
     """
     weights = row_weights(rows)
     if weights is None:

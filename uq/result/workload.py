@@ -1,4 +1,4 @@
-"""Rows of one model that are to be computed, and a preview of them as they arrive."""
+"""Workload: rows of one model to compute, and running statistics of arriving rows."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -29,7 +29,7 @@ class Workload(NamedTuple):
     ----------
     model : Model
     model_reference : str
-        By which `uq.study.installed_models.model_at` finds the model in any process.
+        Reference with which `uq.study.installed_models.model_at` loads the model in any process.
     settings : object
         An instance of ``model.settings``.
     total : int
@@ -73,7 +73,7 @@ def workload_of(study: "Study") -> Workload:
 
 
 _KEPT = 4096
-"""Values of a life kept at most; of more values, every second, fourth and so on is kept."""
+"""Maximum number of stored values of a life; beyond it, every second, fourth ... is stored."""
 
 
 class Preview:
@@ -131,7 +131,7 @@ class Preview:
 
 
 class _Thinned:
-    """Evenly spaced values of a stream."""
+    """Systematic subsample of a stream."""
 
     def __init__(self) -> None:
         self._values: Floats = np.empty(0)
