@@ -85,7 +85,7 @@ class Units:
 
     @property
     def end_together(self) -> bool:
-        """Return whether a world's units end together, at times scaled by integrated inputs."""
+        """Return whether units of a world end together, scaled by integrated inputs only."""
         return self.are_alike and self.shared is not None and self.element.law is None
 
     @property

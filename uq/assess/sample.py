@@ -161,7 +161,7 @@ class Sample(ABC):
 
     @property
     def is_simple_random(self) -> bool:
-        """Return whether rows are independent with equal weights, as exact tests require."""
+        """Return whether rows are independent and unweighted, as exact bounds and tests need."""
         return self.part is None and self.element.weights is None
 
     @property

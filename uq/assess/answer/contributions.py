@@ -269,7 +269,7 @@ class Ranking:
 
     @property
     def may_be_overturned(self) -> bool:
-        """Return whether the total effect of another input may exceed that of the leading input.
+        """Return whether another input may contribute more, with interactions, than the leader.
 
         A total index is at most the index alone and all that no single input explains.
         """
