@@ -1,4 +1,4 @@
-"""What a result says: statistics, lives, regimes, sensitivities, comparison, the answer.
+"""Facts of a result: statistics, lives, regimes, sensitivities, comparison, the answer.
 
 Reading order; each part imports only those above it:
 

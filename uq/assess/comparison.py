@@ -49,7 +49,7 @@ class ComparedStatistic:
 
 @dataclass(frozen=True)
 class ComparedOutput:
-    """An element of an output: name in the table of statistics -> what is compared of it."""
+    """An element of an output: name in the table of statistics -> compared statistics."""
 
     declared: Output
     parts: Mapping[str, tuple[ComparedStatistic, ...]]
@@ -68,7 +68,7 @@ class ComparedOutput:
 def compared_shares(
     pair: Pair, summaries: list[Summary]
 ) -> dict[str, dict[str, ComparedStatistic]]:
-    """Return category -> label -> what is compared: all regimes, else what occurs."""
+    """Return category -> label -> compared share: all regimes, else the labels that occur."""
     names = [name for name in summaries[0].shares if name in summaries[1].shares]
     return {
         name: dict(_shares(pair, [summary.shares[name] for summary in summaries], name))

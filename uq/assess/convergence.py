@@ -143,7 +143,7 @@ def enough(result: AnyResult, output: str | None = None) -> pd.DataFrame:
 
 
 class Errors(NamedTuple):
-    """The error of sampling and that of the rows themselves, as `enough` returns them."""
+    """Sampling error and numerical error of the rows, as `enough` returns them."""
 
     estimate: str
     sampling: float
@@ -152,7 +152,7 @@ class Errors(NamedTuple):
 
 
 def compared(result: Result, element: Element, described: Described) -> Errors:
-    """Compare the error of sampling of an element with that of the rows themselves.
+    """Compare the sampling error of an element with the numerical error of the rows.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ from uq.stats.quantile_functions import normal
 from uq.stats.survival_curves import BetaProducts, SurvivalCurve, kaplan_meier, outliving
 
 ASSUMES = "that censoring is non-informative"
-"""What the Kaplan-Meier estimate assumes."""
+"""Assumption of the Kaplan-Meier estimate (independent censoring)."""
 
 _FEW_ENDS = 5
 _FEW_AT_RISK = 10

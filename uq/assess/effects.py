@@ -29,7 +29,7 @@ PIECES = 5
 """Parts of equal size of an input in which the effect must not turn."""
 
 _SKEWED = 1.0
-"""Skewness of a logarithm that is no better than the input itself; that of uniform ones is -2."""
+"""Skewness at which a logarithm is no better than the input itself; of a uniform input it is -2."""
 
 _SURE = 0.99
 """Confidence with which a turn must be seen."""
@@ -147,7 +147,7 @@ def _suits_logarithm(column: Floats) -> bool:
 
 
 def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
-    """Whether the partial effect of an input steps against its slope between adjacent fifths."""
+    """Return whether a partial effect steps against its slope between adjacent fifths."""
     edges = np.quantile(x, np.linspace(0, 1, PIECES + 1)[1:-1])
     piece = np.searchsorted(edges, x, side="right")
     counts = np.bincount(piece, minlength=PIECES)

@@ -50,7 +50,7 @@ class Widths:
 
 
 def expected_widths(pilot: Result) -> dict[str, Widths]:
-    """Return the widths of the 95 % intervals that a whole study will give.
+    """Return the expected widths of the 95 % intervals of the full study.
 
     Parameters
     ----------

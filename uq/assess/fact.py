@@ -105,7 +105,7 @@ class Fact:
 
 
 class Place(NamedTuple):
-    """What stands at a path of a tree of facts.
+    """A node at a path of a tree of facts.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The numbers of fleets of one size: what is expected, and its 5 and 95 % points over worlds."""
+"""Numbers of fleets of one size: expected value, and 5 and 95 % points over worlds."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -26,12 +26,15 @@ from uq.stats.counting import more_than, turns
 from uq.stats.intervals import Replicates
 
 _NODES = 120
-"""Steps between standard normal quantiles of -6 and 6, of what is integrated once per world and
-causes up to `_WIDE` times the spread of what is integrated inside each unit; else as many times."""
+"""Integration steps between standard normal quantiles of -6 and 6, for inputs integrated per world.
+
+For inputs that cause up to `_WIDE` times the spread of those integrated inside each unit; with a
+larger ratio, proportionally more.
+"""
 
 _WIDE = 3.0
 _WIDEST = 60.0
-"""With a larger ratio, what is integrated once per world would need too many: it is not."""
+"""With a larger ratio, an input is not integrated per world: it would need too many steps."""
 
 _TOO_WIDE = f"it scatters lives more than {_WIDEST:g} times as much as {{}}"
 
@@ -77,12 +80,12 @@ class Units:
 
     @property
     def are_alike(self) -> bool:
-        """Whether all units of a world have the same known probability."""
+        """Return whether all units of a world have the same known probability."""
         return not self.varying
 
     @property
     def end_together(self) -> bool:
-        """Whether all units of a world end together, at a time scaled by integrated inputs only."""
+        """Return whether units of a world end together, scaled by integrated inputs only."""
         return self.are_alike and self.shared is not None and self.element.law is None
 
     @property

@@ -12,7 +12,7 @@ from uq.stats import order_statistics
 from uq.study.file import USUAL, AnalysisTable
 
 SIDES = {"lower": ("lower",), "upper": ("upper",), "both": ("lower", "upper")}
-"""What a study asks for -> the bounds of each element of an output."""
+"""Requested side of the bounds -> the bounds of each element of an output."""
 
 
 class JointBound(NamedTuple):

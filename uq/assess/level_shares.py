@@ -267,7 +267,7 @@ def _errors(rows: Result, target: IndexTarget) -> tuple[Floats | None, str]:
 
 
 def levels(result: AnyResult, output: str | None = None, *, plain: bool = False) -> xr.Dataset:
-    """Apportion the variance to what units share, what is their own, chance, and the solver.
+    """Return the variance components: shared by units, of each unit, of chance and of the solver.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ WORST = -1.0
 
 
 class Kinship(Enum):
-    """How the rows of two results are related; the value is the sentence that reports it."""
+    """Relation between the rows of two results; the value is the sentence that reports it."""
 
     STRANGERS = "The seeds differ: the two samples are independent."
     ROWS = "The studies share a seed: rows with the same number are paired."
@@ -80,7 +80,7 @@ def kinship(first: Result, second: Result) -> Kinship:
 
 
 def _same_rows(first: Result, second: Result) -> bool:
-    """Whether two results are of one study, with the same number in every place."""
+    """Return whether two results are of one study, with the same number in every place."""
     if first.dataset.attrs["study_identity"] != second.dataset.attrs["study_identity"]:
         return False
     return first.dataset.drop_attrs().equals(second.dataset.drop_attrs())
@@ -195,7 +195,7 @@ class Pair:
         return between
 
     def are_equal(self, samples: list[SelectedRows]) -> bool:
-        """Whether the rows are paired and both rows of each pair have the same numbers."""
+        """Return whether the rows are paired and both rows of each pair have the same numbers."""
         if not self._paired or len(samples) < 2:
             return False
         first, second = samples
@@ -205,7 +205,7 @@ class Pair:
 
     @cached_property
     def have_equal_outputs(self) -> bool:
-        """Whether the rows are paired and both rows of each pair agree in all outputs."""
+        """Return whether the rows are paired and both rows of each pair agree in all outputs."""
         first, second = self.rows
         names = [name for name in first.outputs if name in second.dataset]
         return self._paired and first.dataset[names].drop_attrs().equals(
@@ -243,7 +243,7 @@ class Pair:
         return 0.0 if self.kinship is Kinship.STRANGERS else WORST
 
     def _correlation(self, estimator: Estimator, samples: list[SelectedRows]) -> float:
-        """Return that of the influences of paired rows, or of their means in paired replicates.
+        """Return the correlation of influences of paired rows, or of means in paired replicates.
 
         The second is NaN where a replicate has no rows. Together with Woodruff's intervals it gives
         Student's t interval of the linearised differences between replicates, whose own quantiles
@@ -320,7 +320,7 @@ def _students(estimator: Estimator, sample: SelectedRows, estimate: Estimate) ->
 
 
 def _newcombe(sample: SelectedRows) -> Estimate:
-    """Return a share with Wilson's interval, from which that of a difference is built.
+    """Return a share with Wilson's interval, for Newcombe's interval of a difference.
 
     For few hits the interval of a single share is exact; the difference of two such intervals would
     be too wide.

@@ -128,7 +128,7 @@ class Population(Sample):
         return np.asarray(time[np.searchsorted(share, wanted)])
 
     def integration_gain(self, probability: float) -> float:
-        """Return the variance of P(Y < quantile) from lives as computed over that of this one.
+        """Return the variance reduction factor of P(Y < quantile) against plain Monte Carlo.
 
         NaN where it is exact, where too few independent parts show it, or rows have weights.
         """

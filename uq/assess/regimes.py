@@ -28,7 +28,7 @@ from uq.study.input_checks import laws_of
 from uq.text.numbers import percent, percent_interval
 
 MOST_ROWS = 50_000
-"""Of more rows the first ones are compared: all would take too long."""
+"""Largest number of rows compared: of larger results the first rows are used, to save time."""
 
 BOUNDARY = "boundary"
 """Its part of the JSON of a summary."""

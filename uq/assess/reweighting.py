@@ -46,7 +46,7 @@ def changed_laws(old: Inputs, new: Inputs) -> list[str]:
 
 
 def depends_otherwise(old: Inputs, new: Inputs) -> bool:
-    """Whether correlated inputs have other laws or other correlations."""
+    """Return whether correlated inputs have other laws or other correlations."""
     if old.dependence is None or new.dependence is None:
         return False
     if old.dependence.rank_correlation != new.dependence.rank_correlation:

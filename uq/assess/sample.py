@@ -161,7 +161,7 @@ class Sample(ABC):
 
     @property
     def is_simple_random(self) -> bool:
-        """Whether rows are independent and count alike, as exact bounds and tests need it."""
+        """Return whether rows are independent and unweighted, as exact bounds and tests need."""
         return self.part is None and self.element.weights is None
 
     @property
@@ -286,7 +286,7 @@ class Sample(ABC):
         return None
 
     def integration_gain(self, probability: float) -> float:
-        """Return the variance of P(T < quantile) with lives as computed over that of this sample.
+        """Return the variance reduction factor of P(T < quantile) against plain Monte Carlo.
 
         NaN where nothing is integrated, or it is not known.
         """

@@ -1,4 +1,4 @@
-"""The law of a life in each row, of which some inputs are integrated exactly."""
+"""Conditional law of the life of each row, given the inputs that are not integrated exactly."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -162,7 +162,7 @@ SCORES = np.linspace(-6.0, 6.0, 25)
 """Normal scores of the quantiles that are kept of the law of the integrated input."""
 
 _DEGREE = 8
-"""Of the polynomials of the probability below a value: what follows the input is smooth."""
+"""Degree of the polynomials of the probability below a value, which is smooth in the input."""
 
 _STEP = SCORES[1] - SCORES[0]
 _DENSITY = np.exp(-(SCORES**2) / 2) / np.sqrt(2 * np.pi)

@@ -1,4 +1,4 @@
-"""Sensitivity indices of a whole result, by every method."""
+"""Sensitivity indices of a result, by every method."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

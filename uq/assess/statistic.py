@@ -32,7 +32,7 @@ class Reader(Flag):
 
 @dataclass(frozen=True)
 class Context:
-    """What a statistic may need besides the element that it describes.
+    """Inputs of a statistic other than the element that it describes.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Listing:
 
 @dataclass(frozen=True, kw_only=True)
 class StatisticKind:
-    """How statistics of one kind are shown.
+    """Presentation of the statistics of one kind.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ class StatisticKind:
 
     @property
     def has_interval(self) -> bool:
-        """Whether its value has an interval."""
+        """Return whether its value has an interval."""
         return self.form in ("estimate", "moment", "side", "share")
 
     def words(self, value: float) -> str:
@@ -211,7 +211,7 @@ class Statistic:
     resolution: float = 0.0
 
     def is_read_by(self, reader: Reader) -> bool:
-        """Whether this reader shows it."""
+        """Return whether this reader shows it."""
         return reader in self.kind.readers
 
     @property

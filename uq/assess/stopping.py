@@ -72,12 +72,12 @@ class InterimEstimate(NamedTuple):
 
     @property
     def rows_factor(self) -> float:
-        """How many times the rows would be enough if intervals narrow as one over root n."""
+        """Return the sufficient factor on the sample size; intervals narrow as one over root n."""
         return (self.half_width / self.required) ** 2
 
     @property
     def reached(self) -> bool:
-        """Whether the interval, the widest, is narrow enough for the run to end."""
+        """Return whether the widest interval is narrow enough for the run to end."""
         return self.half_width <= self.required
 
 
@@ -102,7 +102,7 @@ def confidence(design: "DesignTable") -> float:
 
 
 def _rests_on_replicates(design: "DesignTable") -> bool:
-    """Whether the interval comes from the scatter of replicates."""
+    """Return whether the interval comes from the scatter of replicates."""
     paths = DESIGNS[design.method].layout is PATHS and design.until and design.until.index
     return not (design.has_independent_samples or paths)
 
@@ -142,7 +142,7 @@ def _explained(estimate: Estimate, design: "DesignTable") -> Estimate:
 
 
 def ended(design: "DesignTable", result: Result) -> bool:
-    """Whether a run ends at this result although its budget is not spent."""
+    """Return whether a run ends at this result although its budget is not spent."""
     size = _latest(design, result)
     return size > 0 and interim_estimate(design, result.first_samples(size)).reached
 
@@ -328,7 +328,7 @@ def out_of_reach(design: "DesignTable", seen: InterimEstimate, samples: int) -> 
 
 
 def _has_none(seen: InterimEstimate) -> bool:
-    """Whether an estimate has no end of an interval, and is not exact either."""
+    """Return whether an estimate lacks an end of its interval and is not exact either."""
     estimate = seen.estimate
     return isnan(estimate.low) and isnan(estimate.high) and estimate.reason != EXACT
 

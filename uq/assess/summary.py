@@ -52,7 +52,7 @@ _DIGITS = 5  # of numbers in tables
 _FEWEST_STEPS = 10  # of the last digit, within the range of the values
 
 REGIME = "regime"
-"""The category by which rows are told apart in tables and figures."""
+"""The category that distinguishes rows in tables and figures."""
 
 Shares = Mapping[str, Statistic]
 """Label -> its share."""

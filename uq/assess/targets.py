@@ -176,7 +176,7 @@ class IndexTarget:
 
     @property
     def sizes(self) -> Floats:
-        """The values or, of a whole output, the distances of rows from their mean, shape (n,)."""
+        """Return the values or, of an array, distances of rows from their mean, shape (n,)."""
         if self.values.ndim == 1:
             return self.values
         whole = self.values[np.isfinite(self.values).all(axis=1)]
@@ -352,7 +352,7 @@ def _event(element: Element, threshold: float) -> IndexTarget:
 
 
 def category_targets(result: Result, output: str) -> Iterator[IndexTarget]:
-    """Yield whether a category, such as the regime, has each of the labels that occur.
+    """Yield, for each label of a category such as the regime, the indicator of that label.
 
     Parameters
     ----------

@@ -256,7 +256,7 @@ class Ranking:
 
     @property
     def leads(self) -> bool:
-        """Whether the largest contribution is large."""
+        """Return whether the largest contribution is large."""
         leader = self.leader
         if leader is None or (leader.share_of_variance and leader.value < SMALL):
             return False
@@ -264,12 +264,12 @@ class Ranking:
 
     @property
     def of_event(self) -> bool:
-        """Whether the target is an event."""
+        """Return whether the target is an event."""
         return self.target.startswith("P(")
 
     @property
     def may_be_overturned(self) -> bool:
-        """Whether another input may contribute more together with others than the first does.
+        """Return whether another input may contribute more, with interactions, than the leader.
 
         A total index is at most the index alone and all that no single input explains.
         """
@@ -282,7 +282,7 @@ class Ranking:
 
     @property
     def denies_a_leader(self) -> bool:
-        """Whether it is settled that no single input contributes much."""
+        """Return whether, with confidence, no single input contributes much."""
         return self.is_flat or (self.leader is not None and not self.leads)
 
     @property

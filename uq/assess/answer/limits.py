@@ -83,7 +83,7 @@ class Limit:
 
     @property
     def place(self) -> str:
-        """Where it is rare: ``between 2.16 and 3.01``."""
+        """Return the range in which the event is rare: ``between 2.16 and 3.01``."""
         if self.of_values:
             side, inwards = ("least", inf) if self.is_lower else ("most", -inf)
             return f"at {side} {self.unit.text(self.at, inwards)}"

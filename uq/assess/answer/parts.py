@@ -246,17 +246,17 @@ class Quantity:
 
     @property
     def is_life(self) -> bool:
-        """Whether it is a life."""
+        """Return whether the quantity is a life."""
         return self.promise is not None and self.promise.is_life
 
     @property
     def is_success(self) -> bool:
-        """Whether it is a life that ends with a success."""
+        """Return whether the quantity is a life that ends with a success."""
         return self.promise is not None and self.promise.ends == "succeed"
 
     @property
     def wants_more(self) -> bool | None:
-        """Whether more of its events are better; None if unknown.
+        """Return whether more of its events are better; None if unknown.
 
         Of successes; of lives that end, fewer; of values above a threshold, as the study states.
         """

@@ -33,7 +33,7 @@ from uq.text.numbers import counted, percent
 
 COVERAGE = 0.95
 CONFIDENCE = 0.95
-"""Of a bound where the study does not ask for others."""
+"""Default of a bound if the study does not set one."""
 
 MIDDLE = 0.5
 

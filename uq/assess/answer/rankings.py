@@ -33,7 +33,7 @@ MOST_TIED = 3
 """With more indistinguishable inputs than this, there is no ranking."""
 
 ALIKE = 0.5
-"""Twins stand together if the index of one is at least this part of that of the other."""
+"""Twins are listed together if the ratio of the smaller index to the larger is at least this."""
 
 LEAST = 0.01
 """A smaller index is not listed."""
@@ -157,7 +157,7 @@ def _scale(first: Measured, kind: IndexKind) -> float:
 
 
 def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
-    """Return the inputs one of which would lead with another seed, with 95 %.
+    """Return the inputs that may rank first in a repeat with another seed, at 95 % confidence.
 
     None without another input, or if errors are unknown.
     """

@@ -80,28 +80,28 @@ class TighterTolerance:
 
     @property
     def is_seen(self) -> bool:
-        """Whether the number differs to the digits shown."""
+        """Return whether the number differs in the digits shown."""
         return self.text(self.before) != self.text(self.after)
 
     @property
     def helps(self) -> bool:
-        """Whether the number moves to its better side, or none is known to be better."""
+        """Return whether the number improves, or whether no direction is known to be better."""
         return self.wants_more in (None, self.rises)
 
     @property
     def may_stay(self) -> bool:
-        """Whether the interval of the new number contains the old one."""
+        """Return whether the interval of the new number contains the old one."""
         return self.after.has_interval and self.after.low <= self.before.value <= self.after.high
 
     @property
     def harms(self) -> bool:
-        """Whether the number surely moves to its worse side."""
+        """Return whether the number worsens with confidence."""
         is_sure = self.after.has_interval and not self.may_stay
         return not self.helps and is_sure and self.is_seen
 
     @property
     def rises(self) -> bool:
-        """Whether the number becomes larger."""
+        """Return whether the number increases."""
         return self.after.value > self.before.value
 
     @property

@@ -36,14 +36,14 @@ _BOUNDS = {"tolerance": "tolerance bounds", "joint_bounds": "joint bounds"}
 
 
 Shortfall = tuple[str, float]
-"""What the sample size does not settle, in a clause, and the factor on it that would settle it.
+"""A clause on the quantity that needs more rows, and the factor on the sample size it needs.
 
 The factor is infinite if no number of rows would.
 """
 
 
 def unsettled(quantity: Quantity) -> Iterator[Shortfall]:
-    """Yield what is not settled about a quantity, and how many times the rows would settle it.
+    """Yield each insufficiently estimated quantity and the factor on the sample size it needs.
 
     References
     ----------

@@ -190,7 +190,7 @@ MOST = 4
 """Tolerances that are compared, of the inputs that contribute most."""
 
 ABOUT = 0.75
-"""Of the gain of the best tolerance, the least that counts as about as much."""
+"""Gains of at least this fraction of the largest gain count as about equal."""
 
 
 def tighten(result: Result, quantity: Quantity, leader: Contribution) -> Iterator[Advice]:

@@ -24,7 +24,7 @@ from uq.text.units import beside, powers, readable, unit_of
 
 ASSUMED = "assumed"
 CHOSEN = "chosen"
-"""Of a quantity whose range is one of designs: nothing to measure, and no tolerance."""
+"""Label of a range of designs: there is nothing to measure and no tolerance."""
 
 _WORDS = f"(given|inferred|fitted|{ASSUMED}|{CHOSEN})"
 _MARK = re.compile(rf"(?:^|[:;,] ){_WORDS}\b|(?<!\bnot )\b{_WORDS}$")
