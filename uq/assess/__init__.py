@@ -1,4 +1,4 @@
-"""Facts of a result: statistics, lives, regimes, sensitivities, comparison, the answer.
+"""What a result says: statistics, lives, regimes, sensitivities, comparison, the answer.
 
 Reading order; each part imports only those above it:
 
@@ -13,7 +13,7 @@ Reading order; each part imports only those above it:
     design_sample      the sample of a sensitivity method
     earliest           distinguishing inputs of the rows that end first
     sampled_inputs     the laws and rank correlations of the inputs
-    scale_laws         the law of a life in each row
+    scale_laws         conditional law of the life of each row
     counted_rows       rows that count alike, each with the value or the life that was computed
     pairing            pairing of the rows of two results
     targets            targets of sensitivity indices
@@ -24,11 +24,11 @@ Reading order; each part imports only those above it:
     reweighting        the rows of a result as those of another study
     fleets             fleets: units of one world, and how many of them have ended
     statistic          a statistic of an output
-    sensitivities      sensitivity indices of a whole result, by every method
+    sensitivities      sensitivity indices of a result, by every method
     failed_rows        bounds of an estimate with the failed rows at best and at worst
     sensitivity_table  sensitivity indices as arrays and as a tree of facts
     stopping           when a run may stop
-    fleet_numbers      the numbers of fleets of one size
+    fleet_numbers      numbers of fleets of one size
     statistics         the statistics of an output: ``table`` lists them
     survival           lifetimes: the probability of a longer life than each time
     level_shares       shares of the variance

@@ -1,4 +1,4 @@
-"""The command ``uq``: start, error reports and end.
+"""The command ``uq``: its start, how it reports mistakes, its end.
 
 Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
 

@@ -4,11 +4,11 @@ Reading order; each part imports only those above it:
 
     basins               basins of attraction of any model on a grid of its parameters
     subset_simulation    subset simulation
-    limit_state          limit state
-    new_rows             new rows where the inspections point
-    single_rows          single rows: of a model without a study, or of a result, computed again
+    limit_state          limit-state function
+    new_rows             new rows in the posterior region, if a result has too few rows there
+    single_rows          single rows: a single run of a model, or a recomputed row of a result
     importance_sampling  importance sampling of rare events
     updating             a study or a result, updated with inspections
-    rare_event_notes     caveats of the probability of a rare event
+    rare_event_notes     caveats of a rare-event probability that its numbers do not show
     rare_events          rare events
 """

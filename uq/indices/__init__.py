@@ -2,17 +2,17 @@
 
 Reading order; each part imports only those above it:
 
-    index              the results of a sensitivity method
-    residual_variance  the variance that remains when one input is known
-    polynomials        polynomials in correlated normal scores
-    measures           measures of how an output follows each input
-    method             a sensitivity method
-    expansions         sensitivity from expansions by SALib: extended FAST and HDMR
-    given_data         sensitivity from a plain sample
-    groups             intervals of methods whose rows come in groups
-    shapley            Shapley effects
-    first_order        first-order indices from a plain sample, with intervals
-    hsic               kernel measures of dependence (HSIC)
-    sobol              Sobol' indices of a crossed design, with intervals from the replicates
-    methods            the sensitivity methods by name, and which of them a design feeds
+    index              results of a sensitivity method
+    residual_variance  residual variance given one input
+    polynomials        polynomials in correlated normal scores (Wick products)
+    measures           given-data sensitivity measures
+    method             sensitivity methods
+    expansions         sensitivity indices from SALib's expansions: extended FAST and HDMR
+    given_data         given-data sensitivity indices from a plain sample
+    groups             confidence intervals of methods with grouped rows
+    shapley            Shapley effects, which are shares of the variance that sum to 1
+    first_order        first-order Sobol' indices from a plain sample, with confidence intervals
+    hsic               kernel dependence measures (HSIC)
+    sobol              Sobol' indices of a crossed design
+    methods            registry of the sensitivity methods
 """

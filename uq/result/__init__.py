@@ -3,14 +3,14 @@
 Reading order; each part imports only those above it:
 
     element      one element of an output: one plain array, with the outcome of every row
-    nesting      samples, units and repeats
+    nesting      nested design
     variables    the variables of a result and their attributes
     one_row      one row of a model as plain numbers, without a Dataset
-    weights      rows that inspections have weighted
+    weights      posterior weights of rows: their variables in a result, and checks of them
     soundness    checks of a Dataset that may be damaged or come from an untrusted file
     result_file  the schema of a result
     elements     the elements of a result's outputs
-    workload     rows of one model that are to be computed, and a preview of them as they arrive
-    result       a result
-    row_choice   choice of a row of a result, and this row as plain numbers
+    workload     workload: rows of one model to compute, and running statistics of arriving rows
+    result       a result: the Dataset of its rows, with its attributes parsed once
+    row_choice   selection of a row of a result, and its values as plain numbers
 """

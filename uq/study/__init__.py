@@ -2,19 +2,19 @@
 
 Reading order; each part imports only those above it:
 
-    checks            checks of a study file against its model and its design, beyond its shape
-    sources           the source files of a module of a model
-    file              the shape of a study file: its tables and keys, whatever the model
-    evaluate          evaluation of one chunk of rows through a model's batch
-    provenance        the processor and the versions that computed a result
+    checks            semantic validation of a study file against its model and its design
+    sources           source files of a model's module, and of the modules that it imports
+    file              schema of a study file: its tables and keys, independent of the model
+    evaluate          evaluation of a chunk of rows by the batch function of a model
+    provenance        provenance of a result
     compiled_cache    numba's cache on disk
-    model_files       files of a user that have a model
-    reading           from the text of a study file to its tables
-    template          a study file to start from, written for one model
-    installed_models  the models installed here, found through entry points
-    input_checks      consistency of inputs with each other, their parameters and the design
+    model_files       user files that define a model
+    reading           parser of a study file
+    template          template of a study file for a model
+    installed_models  installed models, found through entry points, and a hash of their code
+    input_checks      consistency checks of inputs with each other
     schema            JSON Schema of a study file, for editors
     definition        study
-    hints             hints on intervals, indices and bounds that a study will not give
-    row_sampling      the rows of a study
+    hints             hints on intervals, indices and bounds that a study cannot give
+    row_sampling      rows of a study
 """
