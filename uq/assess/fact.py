@@ -13,7 +13,7 @@ A fact inherits functions and rows from the one that contains it, unless it has 
 up, but for a fact with functions of its own: it has notes of its own, too.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -49,7 +49,7 @@ class Fact:
     notes : tuple of str
         Sentences on how its functions compute it.
     more : dict
-        Further members, reached by `at` alone: JSON, `each` and `walk` leave them out.
+        Further members, reached by `at` alone: JSON and `each` leave them out.
     """
 
     members: Any
@@ -98,11 +98,6 @@ class Fact:
                 place = Place(fact, fact.by or by, rows, notes)
         return place
 
-    def walk(self, path: Path = ()) -> Iterator[tuple[Path, "Fact"]]:
-        """Yield every fact of the tree with its path, parents first."""
-        yield path, self
-        yield from _walk(self.members, path)
-
 
 class Place(NamedTuple):
     """A node at a path of a tree of facts.
@@ -142,14 +137,6 @@ def _mapped(member: Any, change: Callable[[Fact], Any]) -> Any:
     if isinstance(member, list):
         return [_mapped(element, change) for element in member]
     return member
-
-
-def _walk(member: Any, path: Path) -> Iterator[tuple[Path, Fact]]:
-    """Yield the facts in plain data."""
-    numbered = enumerate(member) if isinstance(member, list) else ()
-    for name, element in member.items() if isinstance(member, Mapping) else numbered:
-        place = (*path, str(name))
-        yield from element.walk(place) if isinstance(element, Fact) else _walk(element, place)
 
 
 def _member(members: Any, name: str) -> Any:

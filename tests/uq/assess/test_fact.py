@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from fact_trees import walk
 
 from uq.assess.fact import Fact
 from uq.result.result import Result
@@ -64,4 +65,4 @@ def test_a_change_reaches_every_fact():
     changed = TREE.each(lambda fact: replace(fact, by=fact.by and (quality, *fact.by)))
     assert changed.at("y", "a/b", "value").by == (quality, low)
     assert changed.at("y", "list", "0").by == (quality, mean) and changed.json == TREE.json
-    assert {path for path, _ in TREE.walk()} == {(), ("rows",), ("y",), ("y", "a/b", "value")}
+    assert {path for path, _ in walk(TREE)} == {(), ("rows",), ("y",), ("y", "a/b", "value")}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from answered import lifetime
 from computed import asking, linear, with_output
+from fact_trees import walk
 
 import uq
 from uq.assess.answer.answer import answer
@@ -38,7 +39,7 @@ def test_numbers_of_a_short_answer_are_reached_without_reading_a_sentence():
 
 def test_each_number_has_the_functions_that_computed_it():
     facts, life = lifetime()[1].fact, ("quantities", "life")
-    for path, fact in facts.walk():
+    for path, fact in walk(facts):
         numbers = [name for name, member in fact.members.items() if isinstance(member, float)]
         assert all(facts.at(*path, name).by for name in numbers), path
     assert functions(facts, "rows") == ["status_counts"]
