@@ -225,8 +225,8 @@ class Quantity:
         members = {"words": self.words} | of_rows | {"events": events}
         if self.earliest is not None:
             members["earliest"] = self.earliest.fact
-        if self.repeated.sentence:
-            members["another_seed"] = replace(self.repeated, rows=rows)
+        if (repeated := self.repeated).sentence:
+            members["another_seed"] = replace(repeated, rows=rows)
         if self.ranking is not None:
             members["ranking"] = self.ranking.fact(result)
         lives = {
