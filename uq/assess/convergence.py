@@ -17,7 +17,7 @@ from uq.errors import InputError
 from uq.indices.methods import METHODS, indices_of, piloted_by
 from uq.result.element import Element
 from uq.result.result import AnyResult, Result
-from uq.result.variables import error_name
+from uq.result.variables import is_error
 from uq.sampling.designs import DESIGNS
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
@@ -130,7 +130,7 @@ def enough(result: AnyResult, output: str | None = None) -> pd.DataFrame:
     result.refuse_weights("the error of sampling")
     outputs, names = summarise(result).outputs, result.output_names
     rows = result.independent
-    plain = [name for name in names if name not in {error_name(name) for name in names}]
+    plain = [name for name in names if not is_error(name, names)]
     lines = {}
     for element in rows.named_elements(output) if output else rows.elements(plain):
         if element.name not in outputs:

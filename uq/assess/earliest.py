@@ -79,14 +79,6 @@ class RegimeOfFirst:
     is_more_frequent: bool
 
 
-def ranks(column: Floats) -> Floats:
-    """Return the rank of each value, from 0 to 1; equal values share their mean rank."""
-    # Not scipy.stats.rankdata: a summary starts without loading scipy.stats.
-    _, place, counts = np.unique(column, return_inverse=True, return_counts=True)
-    below = np.cumsum(counts) - counts / 2
-    return np.asarray(below[place] / len(column))
-
-
 def earliest_rows(element: Element) -> Places:
     """Return the places of the rows that end first: `SHARE` of those with a value, at most.
 
@@ -115,7 +107,7 @@ def inputs_apart(
     first : ndarray of int, shape (k,)
         Places of the rows.
     ranked : dict of str to ndarray, shape (n,)
-        `ranks` of each input in all rows.
+        Ranks of each input in all rows, from 0 to 1 (`uq.stats.order_statistics.mid_ranks`).
     replicate : ndarray of int, shape (n,), optional
 
     Returns

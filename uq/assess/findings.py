@@ -5,7 +5,6 @@ from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from uq.assess.earliest import ranks
 from uq.assess.fleet import Fleet, fleet_of
 from uq.assess.level_shares import ByLevel, by_level
 from uq.assess.regimes import boundary
@@ -17,6 +16,7 @@ from uq.contract import Floats
 from uq.errors import InputError
 from uq.result.element import Element
 from uq.result.result import Result
+from uq.stats.order_statistics import mid_ranks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,7 +58,7 @@ class Findings:
     @cached_property
     def input_ranks(self) -> dict[str, Floats]:
         """The rank of each input within the independent rows, from 0 to 1."""
-        return {name: ranks(column) for name, column in independent_inputs(self.rows).items()}
+        return {name: mid_ranks(column) for name, column in independent_inputs(self.rows).items()}
 
     @cached_property
     def summary(self) -> Summary:

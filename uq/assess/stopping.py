@@ -143,21 +143,16 @@ def _explained(estimate: Estimate, design: "DesignTable") -> Estimate:
 
 def ended(design: "DesignTable", result: Result) -> bool:
     """Return whether a run ends at this result although its budget is not spent."""
-    size = _latest(design, result)
-    return size > 0 and interim_estimate(design, result.first_samples(size)).reached
+    sizes = [] if design.until is None else _sizes_so_far(design, result)
+    return bool(sizes) and interim_estimate(design, result.first_samples(sizes[-1])).reached
 
 
-def _latest(design: "DesignTable", result: Result) -> int:
-    """Return the size of the last interim estimate, 0 before the first or without `until`.
+def _sizes_so_far(design: "DesignTable", result: Result) -> list[int]:
+    """Return the sizes of the interim estimates up to now, ascending; none before the first.
 
-    The result may be larger, if it was extended.
+    The result may be larger than the last, if it was extended.
     """
-    if design.until is None:
-        return 0
-    return max(
-        (size for size in interim_sizes(design) if size <= result.dataset.attrs["samples"]),
-        default=0,
-    )
+    return [size for size in interim_sizes(design) if size <= result.dataset.attrs["samples"]]
 
 
 def _statistics(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]:
@@ -357,8 +352,7 @@ def _wanted(half_width: float, unit: ReadableUnit) -> str:
 
 def _stop(design: "DesignTable", result: Result) -> tuple[int, InterimEstimate]:
     """Return the size at which the run may end, the last where it may not, and the estimate."""
-    sizes = [size for size in interim_sizes(design) if size <= result.dataset.attrs["samples"]]
-    for size in sizes or [0]:
+    for size in _sizes_so_far(design, result) or [0]:
         seen = interim_estimate(design, result.first_samples(size))
         if seen.reached:
             break

@@ -7,13 +7,14 @@ import pytest
 from computed import asking, kinds, linear, with_output
 
 from uq.assess.answer.answer import answer, conclude
-from uq.assess.earliest import earliest_rows, ranks
+from uq.assess.earliest import earliest_rows
 from uq.assess.findings import Findings
 from uq.render.html.answer import fragment
 from uq.render.html.embedded_rows import rows_inside
 from uq.result.elements import independent_rows, named_elements
 from uq.result.result import Result
 from uq.result.row_choice import lowest_row
+from uq.stats.order_statistics import mid_ranks
 
 
 def with_lives(lives, flags=None, **design):
@@ -161,7 +162,7 @@ def test_the_regime_of_most_of_the_earliest_rows_is_named_where_all_rows_are_in_
 
 
 def test_equal_values_share_their_rank():
-    assert ranks(np.array([3.0, 1.0, 1.0, 2.0])).tolist() == [0.875, 0.25, 0.25, 0.625]
+    assert mid_ranks(np.array([3.0, 1.0, 1.0, 2.0])).tolist() == [0.875, 0.25, 0.25, 0.625]
 
 
 def test_successes_have_no_earliest_rows():
