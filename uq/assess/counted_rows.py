@@ -6,10 +6,10 @@ from math import nan
 
 import numpy as np
 
+from uq.assess.fact import Functions
 from uq.assess.sample import (
     Curve,
     Estimator,
-    Functions,
     Sample,
     censored_before,
     on_side,

@@ -8,10 +8,10 @@ from math import ceil, exp, inf, isfinite, isnan, log, nan
 import numpy as np
 
 from uq.assess.counted_rows import CountedRows
+from uq.assess.fact import Functions
 from uq.assess.sample import (
     Curve,
     Estimator,
-    Functions,
     Sample,
     SelectedRows,
     censored_before,

@@ -105,7 +105,7 @@ class Weighting:
 
     Parameters
     ----------
-    rows : xarray.Dataset
+    rows : Result
         The independent rows of a result, or samples of several rows.
     old, new : Inputs
         The inputs of these rows, with the laws of either study.

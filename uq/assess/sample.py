@@ -4,10 +4,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, isfinite, nan
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from uq.assess.fact import Functions
 from uq.contract import Floats, Mask, Status
 from uq.result.element import Element
 from uq.result.elements import flags
@@ -123,9 +124,6 @@ def quantile(probability: float) -> Estimator:
         return below - below.mean()
 
     return Estimator(of, pull, is_share=True)
-
-
-Functions = tuple[Callable[..., Any], ...]
 
 
 class Curve(NamedTuple):

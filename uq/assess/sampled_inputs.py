@@ -1,13 +1,12 @@
 """The laws and rank correlations of the inputs, as stated and as the rows have them."""
 
-from math import inf
 from typing import NamedTuple
 
 import numpy as np
 import scipy  # which imports scipy.stats when it is first used
 
 from uq.assess.fact import Fact
-from uq.assess.row_inputs import independent_inputs
+from uq.assess.row_inputs import EVERYWHERE, independent_inputs
 from uq.contract import Floats
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
@@ -22,9 +21,6 @@ PROBABILITIES = (0.05, 0.5, 0.95)
 
 MAX_ROWS = 100_000
 """Rows of a study that are drawn for comparison with its laws."""
-
-EVERYWHERE = (-inf, inf)
-"""Bounds of a parameter cut off at most a millionth, which is negligible."""
 
 
 class SampledInput(NamedTuple):

@@ -7,6 +7,7 @@ from functools import cached_property
 from math import isfinite, isinf, isnan
 from typing import Any
 
+from uq.assess.fact import Functions
 from uq.assess.joint_bounds import JointBound, joint_bounds
 from uq.assess.population import as_sample
 from uq.assess.sample import Estimator, Sample
@@ -207,7 +208,7 @@ class Statistic:
     notes: tuple[str, ...] = ()
     facts: Mapping[str, Any] = field(default_factory=dict)
     estimator: Estimator | None = None
-    by: tuple[Callable[..., Any], ...] = ()
+    by: Functions = ()
     resolution: float = 0.0
 
     def is_read_by(self, reader: Reader) -> bool:

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from uq.assess.fact import Fact, Functions
 from uq.assess.input_changes import InputMoments, OnlyChange
-from uq.assess.level_shares import switching
+from uq.assess.level_shares import ByLevel, switching
 from uq.assess.life_fit import Fit, fits_of
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.statistics.table import EMPTY, JSON_ORDER, STATISTICS
 from uq.assess.summary import REGIME, Described, Summary, status_counts
+from uq.assess.variance_by_level import LevelShares
 from uq.result.elements import independent_rows
 from uq.result.nesting import nesting_of
 from uq.stats import estimate_json
@@ -21,8 +22,6 @@ from uq.stats.variance_components import nested_shares
 
 if TYPE_CHECKING:
     from uq.assess.comparison import ComparedOutput, ComparedStatistic, Comparison, Side
-    from uq.assess.level_shares import ByLevel
-    from uq.assess.variance_by_level import LevelShares
 
 
 _QUALITY = {"effective_rows": effective_rows, "pareto_k": tail_shape}
@@ -308,7 +307,7 @@ def _alone(statistic: Statistic) -> Fact:
     return estimate_fact(statistic)
 
 
-def levels_facts(levels: "ByLevel") -> Fact:
+def levels_facts(levels: ByLevel) -> Fact:
     """Return the shares of the variance by level."""
     members: dict[str, Any] = quality_facts(levels.weights) | {
         "samples": levels.samples,
@@ -323,7 +322,7 @@ def levels_facts(levels: "ByLevel") -> Fact:
     return Fact(members, (nesting_of,))
 
 
-def _shares(target: "LevelShares") -> Fact:
+def _shares(target: LevelShares) -> Fact:
     shares = {name: estimate_json.whole(share) for name, share in target.shares.items()}
     more = {"variance": estimate_json.number(target.variance), "samples_left_out": target.left_out}
     words = {"integrated": list(target.integrated), "notes": list(target.notes)}

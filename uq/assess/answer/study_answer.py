@@ -45,7 +45,8 @@ class Answer:
     enough : Enough
         Sufficiency of the sample size.
     unmeasured : dict of str to Fact
-        Assumed laws and fixed values, and laws without a source (`assumptions.assumptions`).
+        Assumed laws and fixed values, and laws without a source
+        (`uq.assess.answer.wording.assumptions`).
     ties : str
         Sentence on inputs tied to a leading input, or "".
     mixing : Fact

@@ -53,9 +53,6 @@ def mark_of(result: Result, name: str) -> str:
     return mark(str(result.dataset[name].attrs.get("source", "")))
 
 
-_TWIN = re.compile(r"(.+)_(\d+)")
-
-
 class DisplayUnit(NamedTuple):
     """A unit in which numbers are shown.
 
@@ -160,6 +157,9 @@ def _twins_called(stem: str, names: Sequence[str]) -> str:
     return f"{count} {_plural(called(stem))}"
 
 
+_TWIN = re.compile(r"(.+)_(\d+)")
+
+
 def twin_of(name: str) -> str:
     """Return the name of an input without its number: ``unbalance`` of ``unbalance_2``."""
     match = _TWIN.fullmatch(name)
@@ -206,7 +206,7 @@ class NumberTarget:
 
     Parameters
     ----------
-    ds : xarray.Dataset
+    result : Result
     name : str
         As `uq.sensitivity` returns it.
 

@@ -10,7 +10,6 @@ from uq.assess.statistic import COUNT, FACT, Context, Listing, Reader, Statistic
 from uq.result.element import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
-from uq.stats.estimate_json import number
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
 """Share of rows that have ended by each of the lives that engineers quote."""
@@ -174,5 +173,5 @@ def integrated(element: Element, context: Context) -> Iterator[Statistic]:
         heading=f"worth of the rows at {_AT}",
         more=f"{names} integrated exactly",
         notes=tuple(filter(None, (words, why))),
-        facts={"integrated": {"inputs": list(law.inputs), "worth": number(worth)}},
+        facts={"integrated": {"inputs": list(law.inputs), "worth": estimate_json.number(worth)}},
     )
