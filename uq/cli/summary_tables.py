@@ -74,7 +74,7 @@ def show_answer(answer: Answer) -> None:
     lead = answer.lead
     if answer.failed or lead is None:
         paragraph(answer.rows_sentence, indent=0)
-    of_lead = [*lead.head, *(quantity.with_cause for quantity in lead.others)] if lead else []
+    of_lead = lead.lines if lead else []
     sampling_lines = [*answer.level_lines, answer.enough.sentence]
     if answer.regimes_first:
         causes = (cause.named_cause for cause in answer.regime_causes)

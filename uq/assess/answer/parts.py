@@ -319,3 +319,8 @@ class Quantity:
         sentences += [] if self.own_error is None else [self.own_error.sentence]
         sentences += [] if self.range is None else [self.range.sentence]
         return [*filter(None, sentences)]
+
+    @property
+    def lines(self) -> list[str]:
+        """The sentences of `head`, then each other event with its main driver."""
+        return [*self.head, *(event.with_cause for event in self.others)]

@@ -73,39 +73,48 @@ class Answer:
 
     @cached_property
     def fact(self) -> Fact:
-        """The answer as a tree, in the units of the outputs.
+        """The answer as a tree of facts, in the units of the outputs.
 
         Returns
         -------
         Fact
-            ``rows``, ``failed``; ``quantities``: name of the element -> ``words``, ``promise``,
-            ``range``, ``own_error`` (the promise if every value were wrong by the error that it
-            states), ``events`` (target -> event), ``earliest`` (of lives), ``another_seed`` and
-            ``ranking``; ``regimes``: label -> event; ``assumptions``, in sentences; ``enough``,
-            whether the rows are: what is not settled besides (``others``), what another seed would
-            find of a share (``expected``), and the errors of what the study is about where that of
-            the rows is the larger; ``intermingled``, where the regimes are: the
-            ``uncertainty_exponent`` of their boundary, and how many uncertain outcomes are ``left``
-            with inputs known twice as well; ``levels``: the ``shares`` of the variance, and the
-            probability of ``another_regime``; ``advice``: rule -> ``text``, ``inputs``, ``rows``,
-            and the ``tolerances`` that were compared: what half the scatter of their ``inputs``
-            would make ``after`` of the number ``what``. The numbers of a sentence stand side by
-            side, with the sentence, under a key of their own. A promise has the places of its
-            bounds among the rows in order (``lower_is_row``), and the share of rows that have the
-            last value, where that bounds nothing (``share_at_largest``). An event has its
-            ``share``, what it is ``decided_by``, its probability in ``parts`` of the range of the
-            input ``over``, and the ``limit`` of this input: from ``at`` to ``end`` its unwanted
-            side is rare on average, with the probability in the part next to ``at``. A ranking has
-            ``contributions``: ``inputs`` -> index, ``effects`` -> change with a ``step`` of the
-            input, in a ``unit`` or, where that is "", in that of the output; and, of shares that
-            inputs explain alone, what is ``unexplained`` by any single one, with the ``totals`` of
-            an expansion where interactions could change the order. The earliest rows have ``lives``
-            (row -> life), and the ``inputs`` that distinguish them and the ``regimes`` of most of
-            them. Beyond the JSON: ``title``; ``unmeasured``: assumed laws and fixed values, and
-            laws without a source; ``b_lives`` of a quantity, and the assumed quantities that it is
-            ``scaled_by``; the ``unit`` in which a promise, a range, a limit or a tolerance is
-            shown, and its length (``per``); ``settled``, whether the rows are enough for the
-            question of the study; ``asked``, the path of the quantity or the regimes that this is.
+            The numbers of a sentence are members beside its ``sentence``.
+
+            - ``rows``, ``failed``: numbers of all rows and of failed rows.
+            - ``quantities``: element -> ``words``, ``promise``, ``range``, ``own_error`` (the
+              promise if every value were wrong by its stated error), ``events`` (target -> event),
+              ``earliest`` (of a life), ``another_seed`` (prediction interval) and ``ranking``.
+            - ``regimes``: label -> event.
+            - ``assumptions``: sentences.
+            - ``enough``: sufficiency of the rows. ``others``: sentences on further unsettled
+              results; ``expected``: prediction interval of a probability with another seed;
+              ``own_error`` and ``sampling_error``, where the numerical error of the subject exceeds
+              its sampling error.
+            - ``intermingled``, if the regimes are: ``uncertainty_exponent`` of their boundary, and
+              ``left``, the share of uncertain outcomes that stay so with inputs known twice as
+              well.
+            - ``levels``: ``shares`` of the variance, and the probability of ``another_regime``.
+            - ``advice``: rule -> ``text``, ``inputs``, ``rows``, and ``tolerances``: for each
+              compared one, the number ``what`` ``before`` and ``after`` the scatter of ``inputs``
+              is halved.
+
+            A promise has the ranks of its bounds among all rows (``lower_is_row``) and, where too
+            many rows share the last value for a bound, their share (``share_at_largest``). An event
+            has its ``share``, its main driver (``decided_by``), its probability in ``parts`` of the
+            range of the input ``over``, and the ``limit`` of this input: the unwanted side of the
+            event is rare on average from ``at`` to ``end``; ``value`` is the probability in the
+            part next to ``at``. A ranking has ``contributions``: ``inputs`` -> index, and
+            ``effects`` -> change with a ``step`` of the input, in ``unit`` or, if that is "", in
+            the unit of the output. Where first-order indices rank, it also has the share of the
+            variance ``unexplained`` by any single input, and the total indices of an expansion
+            (``totals``) if interactions could change the order. The earliest rows have ``lives``
+            (row -> life), the ``inputs`` that distinguish them, and their ``regimes``.
+
+            Not in the JSON: ``title``; ``unmeasured``, assumed laws and fixed values, and laws
+            without a source; ``b_lives`` of a quantity, and the assumed quantities it is
+            ``scaled_by``; the ``unit`` in which a promise, range, limit or tolerance is shown, and
+            its length ``per``; ``settled``, whether the rows are enough for the question of the
+            study; ``asked``, the path of the subject of the study, a quantity or the regimes.
         """
         result = self.result
         members: dict[str, Any] = {
@@ -191,9 +200,7 @@ class Answer:
         lead = self.lead
         sentences = [] if not self.failed and lead else [self.rows_sentence]
         regimes = [regime.with_cause for regime in self.main_regimes]
-        of_lead = []
-        if lead is not None:
-            of_lead = [*lead.head, *(event.with_cause for event in lead.others)]
+        of_lead = [] if lead is None else lead.lines
         general = [*self.level_lines, self.enough.sentence]
         if self.regimes_first:
             sentences += [*regimes, self.mixing.sentence, *general, *of_lead]

@@ -191,7 +191,7 @@ class ToleranceBound:
             )
             return f"{self._confidence}{separately}, at least {covered} {joined}."
         share = " ".join(
-            filter(None, (share, described_values(self._noun, self.undefined, self.rows_failed)))
+            filter(None, (share, described_values(_noun(self), self.undefined, self.rows_failed)))
         )
         cautious: list[str] = []
         for i, quantile in enumerate(self.quantiles):
@@ -221,29 +221,25 @@ class ToleranceBound:
     def would_be(self, quantile: Estimate, before: Estimate) -> str:
         """Return a sentence on the new end of the interval of the quantile, beside the present one.
 
-        "" without it, or where it is no better than now: the rows may be too few. It is called what
-        it is, and not a bound of its coverage: the tolerance bound, of another estimator, is.
+        "" without it, or where it is no better than now: the rows may be too few.
         """
         is_upper = isfinite(self.upper)
         bound, now = ((estimate.low, estimate.high)[is_upper] for estimate in (quantile, before))
         if not (isfinite(bound) and (bound < now if is_upper else bound > now)):
             return ""
-        then, studied = (self.unit.text(end, (-inf, inf)[is_upper]) for end in (bound, now))
-        return f"{self.end_of_quantile} {then}; as studied, {studied}."
+        return self.moved_end(bound, now)
 
-    @property
-    def end_of_quantile(self) -> str:
-        """Opening of the sentence on the new end of the interval of the bounded quantile."""
+    def moved_end(self, then: float, studied: float) -> str:
+        """Return a sentence on an end of the interval of the bounded quantile, then and as studied.
+
+        It is called an end, not a bound with this coverage, which is of another estimator.
+        """
         is_upper = isfinite(self.upper)
         side, p = ("upper", self.coverage) if is_upper else ("lower", 1 - self.coverage)
         quantile = f"{100 * p:.3g} % quantile{' of magnitudes' * self.of_magnitude}"
-        return f"The {side} end of the interval of the {quantile} would then be"
-
-    def opening(self) -> str:
-        """Return the opening of the promise of a single bound, up to the bound."""
-        side = self._side(isfinite(self.upper))
-        share = f"at least {100 * self.coverage:g} %"
-        return f"{self._confidence}, {' '.join(filter(None, (share, self._of_bounded, side)))}"
+        ends = (self.unit.text(end, (-inf, inf)[is_upper]) for end in (then, studied))
+        opening = f"The {side} end of the interval of the {quantile} would then be"
+        return f"{opening} {'; as studied, '.join(ends)}."
 
     @property
     def _confidence(self) -> str:
@@ -273,13 +269,9 @@ class ToleranceBound:
         return f", within the joint bounds of {listed(self.joint)}"
 
     @property
-    def _noun(self) -> str:
-        return "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
-
-    @property
     def _of_bounded(self) -> str:
         """Values that a tolerance bound describes: failed rows count as beyond it."""
-        return described_values(self._noun, self.undefined)
+        return described_values(_noun(self), self.undefined)
 
     @property
     def _is_cautious(self) -> bool:
@@ -344,8 +336,7 @@ class Range:
     def sentence(self) -> str:
         """Range, median, and share that never ends, as far as known."""
         parts = []
-        noun = "magnitudes" if self.of_magnitude else "lives" if self.is_life else "values"
-        of_values = described_values(noun, self.undefined, self.rows_failed)
+        of_values = described_values(_noun(self), self.undefined, self.rows_failed)
         of_values = of_values or "of the magnitudes" * self.of_magnitude
         subject = f"{of_values} " if of_values else ""
         if isfinite(self.low.value) and isfinite(self.high.value):
@@ -370,3 +361,8 @@ class Range:
             verb = self.ends + "s"
             return f"every row {verb} (at most {most} % never {self.ends})"
         return f"{share_text(self.never)} never {self.ends}" if self.never.value > 0 else ""
+
+
+def _noun(described: ToleranceBound | Range) -> str:
+    """Return the noun for the values that a bound or a range describes."""
+    return "magnitudes" if described.of_magnitude else "lives" if described.is_life else "values"

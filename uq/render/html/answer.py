@@ -90,10 +90,10 @@ def sayings(answer: Answer, quantities: Sequence[Quantity]) -> Markup:
     """Return the given quantities of an answer in sentences."""
     sentences = []
     for quantity in quantities:
-        place, of_error = _place(quantity), keyed(answer.fact, *_place(quantity), "own_error")
+        place = _place(quantity)
         lines = [
             keyed(answer.fact, *place, "promise"),
-            joined(_basis(quantity), of_error),
+            joined(_basis(quantity), keyed(answer.fact, *place, "own_error")),
             keyed(answer.fact, *place, "range"),
             *(
                 _event(answer, *place, "events", event.name)
@@ -105,11 +105,7 @@ def sayings(answer: Answer, quantities: Sequence[Quantity]) -> Markup:
             *_earliest(answer, quantity),
         ]
         title = shown(capitalized(quantity.words))
-        sentences.append(
-            Markup("<h3>{}</h3><ul>{}</ul>").format(
-                title, Markup("").join(Markup("<li>{}</li>").format(line) for line in lines if line)
-            )
-        )
+        sentences.append(Markup("<h3>{}</h3>{}").format(title, items(lines)))
     return Markup("").join(sentences)
 
 

@@ -3,7 +3,7 @@
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from math import inf, isfinite, isnan, nan
+from math import isfinite, isnan, nan
 from types import MappingProxyType
 from typing import Any
 
@@ -66,6 +66,7 @@ def tolerances(
     context = Context(rows, _analysis(rows, elements, promises))
     outputs = rows.shown_outputs(context.analysis)
     studied = _statistics(population(rows, outputs), context, promises)
+    count, parts_name = _independent(rows)
 
     def estimates(law_name: str, arguments: Arguments) -> dict[str, Any] | None:
         """Return weights and estimates for other arguments of a law; None if these are invalid."""
@@ -87,7 +88,7 @@ def tolerances(
         return (
             stop
             | embedded
-            | {"quality": _quality(*weighting.quality, rows)}
+            | {"quality": _quality(*weighting.quality, count, parts_name)}
             | {"events": _events(then, elements, context, refused), "promised": bounds}
         )
 
@@ -98,7 +99,6 @@ def tolerances(
     ]
     if not sliders:
         return None
-    count, parts_name = _independent(rows)
     return {
         "sliders": sliders,
         "without": [[plain(readable(called(name))), why] for name, why in without.items()],
@@ -196,10 +196,9 @@ def _place_of_study(stops: Sequence[Mapping[str, Any]]) -> int:
     return next(place for place, stop in enumerate(stops) if "options" not in stop)
 
 
-def _quality(effective_rows: float, pareto_k: float, rows: Result) -> str:
+def _quality(effective_rows: float, pareto_k: float, count: int, name: str) -> str:
     """Return the effective sample size of the weights in words."""
     tail = f" (Pareto k = {pareto_k:.2g})" if isfinite(pareto_k) else ""
-    count, name = _independent(rows)
     digits = f"{effective_rows:.3g}"
     worth = grouped(int(float(digits))) if effective_rows >= 1000 else digits
     return printed(f"These weights are worth {worth} of {grouped(count)} {name}{tail}.")
@@ -300,9 +299,7 @@ def _then(bound: ToleranceBound, then: float, studied: float) -> str:
         return (
             "What could then be promised is not known: too many rows failed, or too few carry it."
         )
-    towards = inf if isfinite(bound.upper) else -inf
-    ends = (bound.unit.text(end, towards) for end in (then, studied))
-    return plain(printed(f"{bound.end_of_quantile} {'; as studied, '.join(ends)}."))
+    return plain(printed(bound.moved_end(then, studied)))
 
 
 def _end(statistic: Statistic | None, bound: ToleranceBound) -> float:

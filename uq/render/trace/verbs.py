@@ -42,6 +42,9 @@ from uq.text.quantities import read_threshold
 
 COUNTED = ("failed", "undefined", "censored", "never")
 
+Facts = Callable[[Result, Options, Path], Fact]
+"""Result, options, path -> facts of a verb, as far as the path needs them."""
+
 
 def _named(path: Path, *within: str) -> str:
     """Return the output, element or target named by a path in the JSON of a verb, or ""."""
@@ -83,8 +86,18 @@ def _answer(result: Result, options: Options, path: Path) -> Fact:
     return (conclude if part in ("", "advice") else without_advice)(findings).fact
 
 
+def _of_independent_rows(facts: Facts) -> Facts:
+    """Return a function for the same facts, which only the independent rows suffice to compute."""
+
+    def marked(result: Result, options: Options, path: Path) -> Fact:
+        return replace(facts(result, options, path), rows=result.independent)
+
+    return marked
+
+
+@_of_independent_rows
 def _inputs(result: Result, options: Options, path: Path) -> Fact:
-    return replace(inputs_facts(result, *path[:1]), rows=result.independent)
+    return inputs_facts(result, *path[:1])
 
 
 def _sensitivity(result: Result, options: Options, path: Path) -> Fact:
@@ -93,11 +106,12 @@ def _sensitivity(result: Result, options: Options, path: Path) -> Fact:
     return sensitivity_facts(sensitivities(result, options.get("method"), names, regime))
 
 
+@_of_independent_rows
 def _levels(result: Result, options: Options, path: Path) -> Fact:
-    name = output_in(_inside(path))
-    return replace(levels_facts(by_level(result, name or None)), rows=result.independent)
+    return levels_facts(by_level(result, output_in(_inside(path)) or None))
 
 
+@_of_independent_rows
 def _fleet(result: Result, options: Options, path: Path) -> Fact:
     try:
         size, allow = int(options.get("size", "")), int(options.get("allow", "0"))
@@ -109,23 +123,23 @@ def _fleet(result: Result, options: Options, path: Path) -> Fact:
     if "by" in options:
         units = the_life(result.independent, output).declared.unit
         by = [read_threshold("by", options["by"], "a life", units)]
-    return replace(fleet_facts(fleet_of(result, size, by, allow, output)), rows=result.independent)
+    return fleet_facts(fleet_of(result, size, by, allow, output))
 
 
+@_of_independent_rows
 def _update(result: Result, options: Options, path: Path) -> Fact:
     times = read_times("by", [options["by"]] if "by" in options else [], result)
-    return replace(learnt_facts(learnt(result, times)), rows=result.independent)
+    return learnt_facts(learnt(result, times))
 
 
+@_of_independent_rows
 def _convergence(result: Result, options: Options, path: Path) -> Fact:
     """Return running estimates, or only the errors if the path names one."""
     name = _inside(path) or None
     if path[2:] and path[2] != "estimates":
         errors = enough(result, name).to_dict("index")
-        facts = Fact({"outputs": {name: errors_facts(line) for name, line in errors.items()}})
-    else:
-        facts = convergence_facts(converging(result, name))
-    return replace(facts, rows=result.independent)
+        return Fact({"outputs": {name: errors_facts(line) for name, line in errors.items()}})
+    return convergence_facts(converging(result, name))
 
 
 def _convergence_again(rows: Result, options: Options, path: Path) -> Any:
@@ -137,8 +151,9 @@ def _convergence_again(rows: Result, options: Options, path: Path) -> Any:
     return running_fact(int(rows.dataset["group"].max()) + 1, line).at(*path[5:]).json
 
 
+@_of_independent_rows
 def _twin(result: Result, options: Options, path: Path) -> Fact:
-    return replace(twin_facts(with_twin(result, options.get("model"))), rows=result.independent)
+    return twin_facts(with_twin(result, options.get("model")))
 
 
 def _what_if(result: Result, options: Options, path: Path) -> Fact:
@@ -180,8 +195,7 @@ class Verb(NamedTuple):
 
     Attributes
     ----------
-    facts : callable
-        Result, options, path -> facts of the verb, as far as the path needs them.
+    facts : Facts
     options : tuple of str
         Options of the command that change its numbers; names that end with a dot are prefixes.
     states : callable
@@ -191,7 +205,7 @@ class Verb(NamedTuple):
         same path of their facts.
     """
 
-    facts: Callable[[Result, Options, Path], Fact]
+    facts: Facts
     options: tuple[str, ...] = ()
     states: Callable[[Result, Fact, Path], dict[str, int]] = states_of_element
     again: Callable[[Result, Options, Path], Any] | None = None
