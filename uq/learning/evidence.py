@@ -115,19 +115,13 @@ def weigh(likelihoods: UnitLikelihoods) -> Evidence:
 
 def on_wide_grids(evidence: Evidence, likelihoods: UnitLikelihoods) -> Evidence:
     """Return the evidence on grids over the full prior, as fine as the given grids."""
-    grids, scale = evidence.grids, likelihoods.scale
-    if scale is not None:
-        grids = tuple(
-            _joined(
-                [
-                    np.linspace(0.0, grid.low, _NODES // 2),
-                    grid.edges,
-                    np.linspace(grid.high, 1.0, _NODES // 2),
-                ],
-                scale,
-            )
-            for grid in grids
-        )
+    if (scale := likelihoods.scale) is None:
+        return evidence
+    grids = []
+    for grid in evidence.grids:
+        below = np.linspace(0.0, grid.low, _NODES // 2)
+        above = np.linspace(grid.high, 1.0, _NODES // 2)
+        grids.append(_joined([below, grid.edges, above], scale))
     return weigh_on(grids, likelihoods)
 
 

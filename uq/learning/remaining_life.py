@@ -18,7 +18,7 @@ from uq.learning.posterior_inputs import quantiles
 from uq.learning.posterior_result import as_unit, inspections_of, prior_of
 from uq.result.elements import Element
 from uq.result.result import Result
-from uq.result.weights import INTEGRATED, ONLY_INSPECTED, WEIGHT, WORLDS
+from uq.result.weights import INSPECTED, INTEGRATED, ONLY_INSPECTED, WEIGHT, WORLDS
 from uq.sampling.levels import SHARED
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows, per_sample
@@ -180,7 +180,7 @@ def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
     units = {inspection: observable.time_unit for inspection, observable in observables.items()}
     if ONLY_INSPECTED not in result.dataset.attrs:
         yield from _of_unit(result, ANY, _last_seen(units), by)
-    for label in map(str, result.dataset["inspected"].values):
+    for label in map(str, result.dataset[INSPECTED].values):
         inspected = {
             inspection: unit for inspection, unit in units.items() if inspection.unit == label
         }
