@@ -40,6 +40,9 @@ values, 0 for exact equality."""
 def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
     """Return the attractor number of each row; 0 is the most frequent attractor.
 
+    Rows are split at every gap of every output, and the parts again until no gap is left. A branch
+    of responses that changes with a parameter is therefore one attractor.
+
     Parameters
     ----------
     compared : sequence of Compared

@@ -185,7 +185,7 @@ class WideSearch(NamedTuple):
         return float(share * self.weights.sum()), np.nan
 
     def hidden_high(self, plain: int) -> float:
-        """Return the 95 % upper bound of a part of the event without hits in all plain rows."""
+        """Return the 95 % upper bound of a part missed by these and `plain` further plain rows."""
         return -log(1 - CONFIDENCE) / (self.plain + plain)
 
     @property

@@ -1,7 +1,7 @@
 """Given-data sensitivity indices from a plain sample, compared with inputs without effect.
 
 RBD-FAST, Borgonovo's delta, PAWN, quantile-oriented indices and regional sensitivity need no
-special design (`uq.indices.measures`, `uq.indices.given_data`). Their sampling error cannot be
+special design (`uq.indices.measures`, `quantile_indices`). Their sampling error cannot be
 estimated: bootstrap intervals cover far less than their nominal level. Each index is therefore
 compared with a null: the 95 % quantile of the same estimate for an input without effect. A second
 limit is the 95 % quantile of the largest estimate over all inputs without effect. An index below

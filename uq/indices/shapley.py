@@ -180,7 +180,7 @@ def shapley_indices(sample: DesignSample) -> Indices:
     (y - (before + after)/2) (before - after) over the steps of an input, is the input's Shapley
     effect times the variance. For independent inputs this is the estimator of [3]_. The sum over a
     path is (y - end)^2/2. A polynomial with known effects is used as control variate
-    (`uq.indices.shapley`). The error of a path is its residual from the regression on all other
+    (`controlled`). The error of a path is its residual from the regression on all other
     paths ("HC3" of [4]_).
 
     References

@@ -1,8 +1,9 @@
 """Marginal likelihood of the inspections, by world, unit and value of the integrated input.
 
 A world is one draw of the inputs that all units share: a sample, or all rows if units share at most
-the integrated input. Each inspected unit uses separate rows in each world. The product over units
-of their mean likelihoods is therefore an unbiased estimate of the evidence of a world.
+the integrated input. With several worlds, each inspected unit uses separate rows of each, so that
+the product over units of their mean likelihoods is an unbiased estimate of the evidence of a world.
+In a single world every row represents each unit.
 """
 
 from collections.abc import Sequence

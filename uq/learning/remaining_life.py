@@ -189,7 +189,7 @@ def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
 
 
 def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:
-    """Return the time of the latest inspection, expressed in each unit of time."""
+    """Return the latest time of an inspection, by unit of time."""
     latest: dict[str, float] = {}
     for inspection, unit in units.items():
         if inspection.time is not None:

@@ -254,7 +254,7 @@ def share_interval(
     low, high : float
         Wilson's score interval [1]_. For replicates it uses the effective number of independent
         rows, and Student's t in place of the normal quantile [2]_. If hits or misses are few, it is
-        the interval of Clopper and Pearson (`uq.stats.intervals`), which is conservative. The
+        the interval of Clopper and Pearson (`exact_interval`), which is conservative. The
         effective number of rows is then at most the number of rows, since the scatter of replicates
         cannot be estimated from few hits.
 
