@@ -20,6 +20,13 @@ _CALLS = 250  # of the model, in one search
 _SAME_WAY = 0.7  # cosine between a start and a known design point: skip a duplicate search
 _APART = 0.5  # standard deviations between distinct design points
 
+PLAIN = 0.25
+"""Share of rows from the input law; its inverse bounds the weights (defensive mixture)."""
+
+_OF_ONE_INPUT = 2.5  # factor of the standard deviation of one input, which alternates between rows
+_MOST_OF_ALL = 2.5
+_ENOUGH = 20.0  # effective rows within the event, sufficient for the scatter of replicates
+
 
 def design_points(margin: Margin, u: Floats, margins: Floats) -> Floats:
     """Find the design points: limit-state points closest to the origin of standard normal space.
@@ -133,14 +140,6 @@ def drawn_around(points: Floats, count: int, rng: np.random.Generator) -> tuple[
 
 def _cosine(a: Floats, b: Floats) -> float:
     return float(a @ b / (np.linalg.norm(a) * np.linalg.norm(b)))
-
-
-PLAIN = 0.25
-"""Share of rows from the input law; its inverse bounds the weights (defensive mixture)."""
-
-_OF_ONE_INPUT = 2.5  # factor of the standard deviation of one input, which alternates between rows
-_MOST_OF_ALL = 2.5
-_ENOUGH = 20.0  # effective rows within the event, sufficient for the scatter of replicates
 
 
 class WideSearch(NamedTuple):

@@ -34,6 +34,13 @@ from uq.text.literals import read_toml, toml
 
 _FILE = "new rows"
 
+ENOUGH = 400.0
+"""Effective sample size at which sampling stops."""
+
+_SHARE = 4
+_FEWEST = 100
+_SEED = 23
+
 
 def with_given_rows(study: Study, scores: Floats, name: str, seed: int) -> Study:
     """Return a study of the same model with given rows.
@@ -76,14 +83,6 @@ def _within(values: Floats) -> dict[str, Any]:
     """Return a bounding law for values of an input that is a multiple of another input."""
     low, high = float(values.min()), float(values.max())
     return {"distribution": "uniform", "lower": low, "upper": max(high, np.nextafter(low, np.inf))}
-
-
-ENOUGH = 400.0
-"""Effective sample size at which sampling stops."""
-
-_SHARE = 4
-_FEWEST = 100
-_SEED = 23
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,11 @@ DUMMIES = 19
 Measure = Callable[[Floats, DesignSample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
 """Input columns, shape (n, k), and the sample -> raw indices, shape (k,) each, and notes."""
 
+MIN_SLICES = 5
+MOST_SLICES = 48
+_ROWS_IN_SLICE = 30
+_ROWS_BEYOND = 5
+
 
 def one_kind(kind: IndexKind, measure: Callable[[Floats, Floats], Floats]) -> Measure:
     """Return a `Measure` of one kind of index, from a function of input columns and output."""
@@ -133,12 +138,6 @@ def _shuffled_note(name: str, null_values: Mapping[IndexKind, Floats]) -> str:
         f"{name} has many equal values: shuffled {DUMMIES} times, and so without effect, it reaches"
         f" {reached}"
     )
-
-
-MIN_SLICES = 5
-MOST_SLICES = 48
-_ROWS_IN_SLICE = 30
-_ROWS_BEYOND = 5
 
 
 def quantile_indices(

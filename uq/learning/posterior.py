@@ -23,6 +23,11 @@ from uq.stats.importance_weights import Smoothed
 
 _WHOLE = "no row of this result agrees with"
 
+NO_OTHERS = (
+    "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
+    " stands for an inspected one; set [design] units = {} or more"
+)
+
 
 def contradictions(likelihoods: UnitLikelihoods, grids: Sequence[QuadratureGrid]) -> list[str]:
     """Return messages naming the smallest sets of inspections that no row is consistent with.
@@ -87,12 +92,6 @@ def _agreeing_worlds(rows: Mask, block: NDArray[np.intp], likelihoods: UnitLikel
     np.logical_or.at(agreeing, likelihoods.world[block], rows)
     shared = likelihoods.shares_scale
     return agreeing if shared else np.asarray(agreeing.any(axis=1, keepdims=True))
-
-
-NO_OTHERS = (
-    "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
-    " stands for an inspected one; set [design] units = {} or more"
-)
 
 
 @dataclass(frozen=True)

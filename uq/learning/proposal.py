@@ -20,6 +20,9 @@ _HALVINGS = 60
 _COLDEST = 1e-9
 _LOG_ROOT = float(np.log(2 * np.pi) / 2)
 
+_WIDER = 2.0
+"""Widening factor of the last proposal: light tails bias estimates, heavy ones only cost rows."""
+
 
 class Proposal(NamedTuple):
     """A mixture of equal Student laws in some of the normal scores of the inputs.
@@ -137,10 +140,6 @@ def fitted(
     places = (np.arange(_CENTRES) + rng.random()) / _CENTRES
     chosen = np.minimum(np.searchsorted(above, places), len(at) - 1)
     return Proposal(columns, at[chosen], root)
-
-
-_WIDER = 2.0
-"""Widening factor of the last proposal: light tails bias estimates, heavy ones only cost rows."""
 
 
 class Repetition:

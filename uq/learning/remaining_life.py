@@ -27,6 +27,13 @@ from uq.text.quantities import read_threshold
 
 ENDS = (0.025, 0.975)
 
+PROBABILITIES = (0.05, 0.5, 0.95)
+ANY = ""
+"""Label of units never inspected."""
+
+_GONE = "hardly any row agrees with its inspections and still runs"
+_LEAST = 1e-3
+
 
 def over_shared(result: Result, element: Element, seen: float, time: float) -> dict[float, float]:
     """Return the 95 % band of P(T < time | T > `seen`) over the shared inputs, for a new unit.
@@ -113,14 +120,6 @@ def check_times(times: Sequence[float], asked_by: str) -> None:
     """Refuse times that are negative or not finite."""
     if wrong := [time for time in times if not 0 <= time < inf]:
         raise InputError(f"{asked_by}: time = {wrong[0]:g}: must be finite, and 0 or more")
-
-
-PROBABILITIES = (0.05, 0.5, 0.95)
-ANY = ""
-"""Label of units never inspected."""
-
-_GONE = "hardly any row agrees with its inspections and still runs"
-_LEAST = 1e-3
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,8 @@ from uq.stats.intervals import Replicates, replicates_of_some
 
 Places = NDArray[np.integer]
 
+_HUGE = 700.0
+
 
 def log_worth(evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting) -> Floats:
     """Return leave-one-out log weights of the rows as uninspected units.
@@ -82,9 +84,6 @@ def _mean_of_others(logs: Floats, of_unit: Places, sample: Places) -> Floats:
     total = np.maximum(others(np.exp(logs - level)), 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(count > 0, np.log(total / count) + level, -np.inf)
-
-
-_HUGE = 700.0
 
 
 @dataclass(frozen=True)
