@@ -36,9 +36,15 @@ Compared = tuple[Floats, Floats, float]
 standard errors, 0 if unknown; and the tolerance relative to the largest finite magnitude of the
 values, 0 for exact equality."""
 
+Axis = tuple[float, float, int]
+"""First value, last value, number of values."""
+
 
 def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
     """Return the attractor number of each row; 0 is the most frequent attractor.
+
+    Rows are split at every gap of every output, and the parts again until no gap is left. A branch
+    of responses that changes with a parameter is therefore one attractor.
 
     Parameters
     ----------
@@ -77,10 +83,6 @@ def _parted(
     parted = np.empty_like(labels)
     parted[order] = np.cumsum(new)
     return parted
-
-
-Axis = tuple[float, float, int]
-"""First value, last value, number of values."""
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,13 @@ _CALLS = 250  # of the model, in one search
 _SAME_WAY = 0.7  # cosine between a start and a known design point: skip a duplicate search
 _APART = 0.5  # standard deviations between distinct design points
 
+PLAIN = 0.25
+"""Share of rows from the input law; its inverse bounds the weights (defensive mixture)."""
+
+_OF_ONE_INPUT = 2.5  # factor of the standard deviation of one input, which alternates between rows
+_MOST_OF_ALL = 2.5
+_ENOUGH = 20.0  # effective rows within the event, sufficient for the scatter of replicates
+
 
 def design_points(margin: Margin, u: Floats, margins: Floats) -> Floats:
     """Find the design points: limit-state points closest to the origin of standard normal space.
@@ -135,14 +142,6 @@ def _cosine(a: Floats, b: Floats) -> float:
     return float(a @ b / (np.linalg.norm(a) * np.linalg.norm(b)))
 
 
-PLAIN = 0.25
-"""Share of rows from the input law; its inverse bounds the weights (defensive mixture)."""
-
-_OF_ONE_INPUT = 2.5  # factor of the standard deviation of one input, which alternates between rows
-_MOST_OF_ALL = 2.5
-_ENOUGH = 20.0  # effective rows within the event, sufficient for the scatter of replicates
-
-
 class WideSearch(NamedTuple):
     """Importance-sampling estimate of the event probability from widened laws.
 
@@ -185,7 +184,7 @@ class WideSearch(NamedTuple):
         return float(share * self.weights.sum()), np.nan
 
     def hidden_high(self, plain: int) -> float:
-        """Return the 95 % upper bound of a part of the event without hits in all plain rows."""
+        """Return the 95 % upper bound of a part missed by these and `plain` further plain rows."""
         return -log(1 - CONFIDENCE) / (self.plain + plain)
 
     @property

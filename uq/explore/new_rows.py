@@ -34,6 +34,13 @@ from uq.text.literals import read_toml, toml
 
 _FILE = "new rows"
 
+ENOUGH = 400.0
+"""Effective sample size at which sampling stops."""
+
+_SHARE = 4
+_FEWEST = 100
+_SEED = 23
+
 
 def with_given_rows(study: Study, scores: Floats, name: str, seed: int) -> Study:
     """Return a study of the same model with given rows.
@@ -76,14 +83,6 @@ def _within(values: Floats) -> dict[str, Any]:
     """Return a bounding law for values of an input that is a multiple of another input."""
     low, high = float(values.min()), float(values.max())
     return {"distribution": "uniform", "lower": low, "upper": max(high, np.nextafter(low, np.inf))}
-
-
-ENOUGH = 400.0
-"""Effective sample size at which sampling stops."""
-
-_SHARE = 4
-_FEWEST = 100
-_SEED = 23
 
 
 @dataclass(frozen=True)
@@ -146,11 +145,11 @@ def enlarged(
     Adaptive importance sampling in independent repetitions, whose scatter gives all confidence
     intervals. Each repetition starts with its part of the rows (`repetitions_of`). In each round it
     draws its part from a mixture of Student laws around its previous rows, with tempered weights. A
-    row of any round has as weight the prior density over the mixture of all proposals of its
-    repetition [1]_. Once these rows represent the posterior, they are dropped: further rounds are
-    drawn from a final mixture around them, with weights against this mixture and the prior. The
-    likelihood may be discontinuous. An integrated input keeps its law. With several inspected
-    units, the mixture covers the rows of each.
+    row has as weight the prior density over the mixture of the prior and all proposals of its
+    repetition [1]_. Once these rows represent the posterior, the new ones are dropped: further
+    rounds are drawn from a final mixture around all of them, with weights against this mixture and
+    the prior. The likelihood may be discontinuous. An integrated input keeps its law. With several
+    inspected units, the mixture covers the rows of each.
 
     References
     ----------
@@ -229,7 +228,7 @@ class _Rounds:
     def settled(
         self, repetitions: Sequence[Repetition], rows: Result, updated: Posterior
     ) -> list[Repetition]:
-        """Return repetitions with a final proposal around the rows so far, without these rows."""
+        """Return repetitions without new rows, with a final proposal around all rows so far."""
         columns, count = _columns(self._study, updated), len(repetitions)
         log_likelihoods = _log_likelihoods(updated, rows.dataset["replicate"].values, count)
         return Repetition.settled(repetitions, log_likelihoods, columns, self._rng(count))

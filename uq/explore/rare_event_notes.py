@@ -25,7 +25,8 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
     margin : LimitState
         With the rows that failed or have no output.
     factor : float
-        Ratio of largest to smallest replicate estimate, 1 if chain correlation explains it.
+        Ratio of largest to smallest replicate estimate
+        (`uq.explore.subset_simulation.disagreement`); 1 if it needs no explanation.
     """
     notes = []
     estimates, most = ds["estimate"].values, float(ds["high"])

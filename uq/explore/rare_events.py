@@ -127,11 +127,12 @@ def rare_event(
 
     Both methods can miss a part of the event; subset simulation misses a part behind a jump of the
     output. As a check, as many rows as in a level are drawn from widened laws
-    (`uq.explore.importance_sampling`). If their interval is above that of the method, it replaces
-    the latter. If only their estimate is above, and enough rows are within the event, their high
-    end is used, with a note. If replicates of subset simulation scatter more than chain correlation
-    explains, the high end is the upper bound from plain rows, and the low end is centred on the
-    geometric mean of the replicates.
+    (`uq.explore.importance_sampling`). Their estimate and interval replace those of the method if
+    their interval is above, or if enough of them are within the event and a replicate did not reach
+    it. If only their estimate is above, by more than a standard error, and enough rows are within
+    the event, the high end is at least theirs, with a note. If replicates of subset simulation
+    scatter more than chain correlation explains, the high end is at least the upper bound from
+    plain rows, and the low end is that about the geometric mean of the replicates.
 
     Examples
     --------

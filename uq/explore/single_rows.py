@@ -30,6 +30,9 @@ from uq.study.installed_models import model_at
 MOST_SHOWN = 6
 """Maximum number of quantities in the figure of a time history."""
 
+PLACES = ("world", "unit", "repeat", "replicate", "group", "block")
+"""Variables with the design indices of a row."""
+
 
 def simulate(
     model: str | Model,
@@ -123,10 +126,6 @@ def _trajectory(row: Row) -> xr.DataArray:
         },
         attrs={"role": "trajectory", "long_name": "time history", "period": history.period},
     )
-
-
-PLACES = ("world", "unit", "repeat", "replicate", "group", "block")
-"""Variables with the design indices of a row."""
 
 
 @dataclass(frozen=True)

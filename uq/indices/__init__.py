@@ -9,7 +9,7 @@ Reading order; each part imports only those above it:
     method             sensitivity methods
     expansions         sensitivity indices from SALib's expansions: extended FAST and HDMR
     given_data         given-data sensitivity indices from a plain sample
-    groups             confidence intervals of methods with grouped rows
+    groups             confidence intervals of methods with grouped rows, and Morris' effects
     shapley            Shapley effects, which are shares of the variance that sum to 1
     first_order        first-order Sobol' indices from a plain sample, with confidence intervals
     hsic               kernel dependence measures (HSIC)

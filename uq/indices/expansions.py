@@ -14,6 +14,17 @@ from uq.sampling.unit_cube import HARMONICS
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import is_constant
 
+EXPLAINED = 0.8
+"""Smallest explained share of the held-out variance for which an expansion is accepted."""
+
+_DEGREES = (2, 4, 6, 8)  # and the highest degree that an input with few values allows
+_ENOUGH = 0.99
+_LEAST_VALUES = 10
+_MIN_ROWS = 600  # SALib accepts no fewer than the 300 that are not held out
+_MOST_ROWS = 2048
+_TERMS_PER_ROW = 0.8
+_MOST_TERMS = 500
+
 
 def fast_indices(sample: DesignSample) -> Indices:
     """Estimate first-order and total indices by extended FAST.
@@ -93,18 +104,6 @@ def _orders(curve: Floats, omega: int) -> Floats:
     orders = [compute_orders(element, len(element), HARMONICS, omega) for element in moving]
     weights = moving.var(axis=1)
     return np.average(orders, axis=0, weights=weights / weights.sum())
-
-
-EXPLAINED = 0.8
-"""Smallest explained share of the held-out variance for which an expansion is accepted."""
-
-_DEGREES = (2, 4, 6, 8)  # and the highest degree that an input with few values allows
-_ENOUGH = 0.99
-_LEAST_VALUES = 10
-_MIN_ROWS = 600  # SALib accepts no fewer than the 300 that are not held out
-_MOST_ROWS = 2048
-_TERMS_PER_ROW = 0.8
-_MOST_TERMS = 500
 
 
 def hdmr_indices(sample: DesignSample) -> Indices:

@@ -1,7 +1,7 @@
 """Given-data sensitivity indices from a plain sample, compared with inputs without effect.
 
 RBD-FAST, Borgonovo's delta, PAWN, quantile-oriented indices and regional sensitivity need no
-special design (`uq.indices.measures`, `uq.indices.given_data`). Their sampling error cannot be
+special design (`uq.indices.measures`, `quantile_indices`). Their sampling error cannot be
 estimated: bootstrap intervals cover far less than their nominal level. Each index is therefore
 compared with a null: the 95 % quantile of the same estimate for an input without effect. A second
 limit is the 95 % quantile of the largest estimate over all inputs without effect. An index below
@@ -29,6 +29,11 @@ DUMMIES = 19
 
 Measure = Callable[[Floats, DesignSample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
 """Input columns, shape (n, k), and the sample -> raw indices, shape (k,) each, and notes."""
+
+MIN_SLICES = 5
+MOST_SLICES = 48
+_ROWS_IN_SLICE = 30
+_ROWS_BEYOND = 5
 
 
 def one_kind(kind: IndexKind, measure: Callable[[Floats, Floats], Floats]) -> Measure:
@@ -133,12 +138,6 @@ def _shuffled_note(name: str, null_values: Mapping[IndexKind, Floats]) -> str:
         f"{name} has many equal values: shuffled {DUMMIES} times, and so without effect, it reaches"
         f" {reached}"
     )
-
-
-MIN_SLICES = 5
-MOST_SLICES = 48
-_ROWS_IN_SLICE = 30
-_ROWS_BEYOND = 5
 
 
 def quantile_indices(

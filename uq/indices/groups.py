@@ -34,6 +34,13 @@ for a normal law."""
 Values = Mapping[IndexKind, Mapping[str, float]]
 """Kind of index -> input -> value."""
 
+MIN_TRAJECTORIES = 4
+"""Minimum number of trajectories for a useful mean."""
+
+MU = IndexKind("mu", "mean effect (mu)", "output")
+SIGMA = IndexKind("sigma", "scatter of effects (sigma)", "output")
+MU_STAR = IndexKind("mu_star", "mean magnitude of effects (mu*)", "output")
+
 
 def pooled_with_intervals(
     estimate: Callable[[Floats], Values],
@@ -154,14 +161,6 @@ def widened(estimate: Estimate, by: float) -> Estimate:
     value = estimate.value
     below, above = (np.hypot(end - value, by) for end in (estimate.low, estimate.high))
     return replace(estimate, low=float(value - below), high=float(value + above))
-
-
-MIN_TRAJECTORIES = 4
-"""Minimum number of trajectories for a useful mean."""
-
-MU = IndexKind("mu", "mean effect (mu)", "output")
-SIGMA = IndexKind("sigma", "scatter of effects (sigma)", "output")
-MU_STAR = IndexKind("mu_star", "mean magnitude of effects (mu*)", "output")
 
 
 def morris_indices(sample: DesignSample) -> Indices:

@@ -20,6 +20,15 @@ MOST_CATEGORIES = 10
 MANY_EQUAL = 0.05
 """Share of the rows with one value above which an input has many equal values."""
 
+MIN_SIDE = 10
+"""Fewest rows with the event, and without it, for a comparison of distributions."""
+
+_HARMONICS = 10
+_VALUE_SLICES = 20
+_GRID = 100
+_PAWN_SLICES = 10
+_TIED_OUTPUT = 0.01  # share of the rows with one value
+
 
 def has_many_equal(column: Floats) -> bool:
     """Return whether one value of an input occurs in a large share of the rows."""
@@ -93,16 +102,6 @@ def by_slices(
 def even_cuts(rows: int, slices: int) -> NDArray[np.intp]:
     """Return the start positions of slices with equal numbers of rows, except the first."""
     return np.linspace(0, rows, slices + 1)[1:-1].astype(np.intp)
-
-
-MIN_SIDE = 10
-"""Fewest rows with the event, and without it, for a comparison of distributions."""
-
-_HARMONICS = 10
-_VALUE_SLICES = 20
-_GRID = 100
-_PAWN_SLICES = 10
-_TIED_OUTPUT = 0.01  # share of the rows with one value
 
 
 def first_order(x: Floats, y: Floats) -> Floats:

@@ -14,6 +14,13 @@ from uq.sampling.designs import PLAIN, Layout
 from uq.stats.intervals import CONFIDENCE, Replicates, is_constant, replicates_of_some, sized
 from uq.text.numbers import counted
 
+NO_EFFECT = "the same value in all rows: nothing depends on the inputs"
+NO_VARIANCE = "the same value in all rows: there is no variance to apportion"
+UNSEEN = (
+    "the same value in all independent rows, though not in those between them: they show no"
+    " variance to apportion; more samples are needed"
+)
+
 
 @dataclass(frozen=True)
 class DesignSample:
@@ -105,14 +112,6 @@ class DesignSample:
 def alone(rows: int) -> NDArray[np.intp]:
     """Return the groups of a plain sample, shape (1, n, 1)."""
     return np.arange(rows)[None, :, None]
-
-
-NO_EFFECT = "the same value in all rows: nothing depends on the inputs"
-NO_VARIANCE = "the same value in all rows: there is no variance to apportion"
-UNSEEN = (
-    "the same value in all independent rows, though not in those between them: they show no"
-    " variance to apportion; more samples are needed"
-)
 
 
 @dataclass(frozen=True)

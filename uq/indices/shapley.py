@@ -13,6 +13,22 @@ from uq.stats.intervals import ROUNDING, UNKNOWN, is_constant, scatter_interval
 MIN_SEEN = 10
 """Minimum number of paths for the conclusion that an input has no effect of its own."""
 
+FOLDS = 4
+"""Number of cross-fitting folds: the polynomial used on a fold is fitted to all other folds."""
+
+ROWS_EACH = 4
+"""Rows required per fitted coefficient."""
+
+MOST_TERMS = 250
+MOST_NUMBERS = 30_000_000
+"""Largest number of values of all products over all rows."""
+
+MIN_PATHS = 32
+"""Minimum number of paths for Student's interval of a mean."""
+
+EXACT = 1e-9
+"""Smallest half-width of an interval: the rounding error of an exact effect."""
+
 
 def parts_of(sample: DesignSample, y: Floats) -> Floats:
     """Return the contribution of each input to half the squared change along each path.
@@ -60,17 +76,6 @@ def paths_without_effect(sample: DesignSample, name: str) -> int:
     moves = (y[:, -1] != y[:, 0]).reshape(len(y), -1).any(axis=1)
     seen = int((first & (x[:, 1] != x[:, 0]) & moves).sum())
     return seen if seen >= MIN_SEEN else 0
-
-
-FOLDS = 4
-"""Number of cross-fitting folds: the polynomial used on a fold is fitted to all other folds."""
-
-ROWS_EACH = 4
-"""Rows required per fitted coefficient."""
-
-MOST_TERMS = 250
-MOST_NUMBERS = 30_000_000
-"""Largest number of values of all products over all rows."""
 
 
 def controlled(sample: DesignSample, parts: Floats) -> tuple[Floats, Floats]:
@@ -143,13 +148,6 @@ def _products_of(left: Floats, right: Floats) -> Floats:
     return np.asarray(np.tensordot(left, right, axes=((0, 1), (0, 1))))
 
 
-MIN_PATHS = 32
-"""Minimum number of paths for Student's interval of a mean."""
-
-EXACT = 1e-9
-"""Smallest half-width of an interval: the rounding error of an exact effect."""
-
-
 def shapley_indices(sample: DesignSample) -> Indices:
     """Estimate the Shapley effect of each input.
 
@@ -180,7 +178,7 @@ def shapley_indices(sample: DesignSample) -> Indices:
     (y - (before + after)/2) (before - after) over the steps of an input, is the input's Shapley
     effect times the variance. For independent inputs this is the estimator of [3]_. The sum over a
     path is (y - end)^2/2. A polynomial with known effects is used as control variate
-    (`uq.indices.shapley`). The error of a path is its residual from the regression on all other
+    (`controlled`). The error of a path is its residual from the regression on all other
     paths ("HC3" of [4]_).
 
     References

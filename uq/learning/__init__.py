@@ -2,12 +2,12 @@
 
 Reading order; each part imports only those above it:
 
-    inspections       inspections
+    inspections       inspections, read from files and tables
     importance        importance weights of rows that were not drawn from the laws of the study
     proposal          adaptive importance sampling of new rows
     likelihood        likelihood of an inspection, given the true value of the observable
-    observables       observables
-    integrated_input  integrated input
+    observables       quantities that can be inspected
+    integrated_input  the input that only scales lives and is integrated by quadrature
     unit_likelihood   likelihood of all inspections of a unit, for each row that represents it
     evidence          marginal likelihood of the inspections, by world
     scale_posterior   posterior of the integrated input in each row

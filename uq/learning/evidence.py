@@ -1,8 +1,9 @@
 """Marginal likelihood of the inspections, by world, unit and value of the integrated input.
 
 A world is one draw of the inputs that all units share: a sample, or all rows if units share at most
-the integrated input. Each inspected unit uses separate rows in each world. The product over units
-of their mean likelihoods is therefore an unbiased estimate of the evidence of a world.
+the integrated input. With several worlds, each inspected unit uses separate rows of each, so that
+the product over units of their mean likelihoods is an unbiased estimate of the evidence of a world.
+In a single world every row represents each unit.
 """
 
 from collections.abc import Sequence
@@ -115,19 +116,13 @@ def weigh(likelihoods: UnitLikelihoods) -> Evidence:
 
 def on_wide_grids(evidence: Evidence, likelihoods: UnitLikelihoods) -> Evidence:
     """Return the evidence on grids over the full prior, as fine as the given grids."""
-    grids, scale = evidence.grids, likelihoods.scale
-    if scale is not None:
-        grids = tuple(
-            _joined(
-                [
-                    np.linspace(0.0, grid.low, _NODES // 2),
-                    grid.edges,
-                    np.linspace(grid.high, 1.0, _NODES // 2),
-                ],
-                scale,
-            )
-            for grid in grids
-        )
+    if (scale := likelihoods.scale) is None:
+        return evidence
+    grids = []
+    for grid in evidence.grids:
+        below = np.linspace(0.0, grid.low, _NODES // 2)
+        above = np.linspace(grid.high, 1.0, _NODES // 2)
+        grids.append(_joined([below, grid.edges, above], scale))
     return weigh_on(grids, likelihoods)
 
 

@@ -77,6 +77,11 @@ _NUMBERS = COLUMNS[3:]
 _DETECTION = ("detection_50", "detection_90")
 _SEPARATE = "separate cells by commas, and write a decimal point in numbers"
 
+Given = str | Path | Sequence[Mapping[str, object]]
+"""A file of inspections, CSV or TOML, or tables with the same columns."""
+
+_HEADER = re.compile(r"\s*\[\[\s*[\"']?inspection[\"']?\s*\]\]")
+
 
 def read_inspections(path: Path) -> list[Inspection]:
     """Read inspections from a CSV file.
@@ -277,12 +282,6 @@ def _curve(curve: Sequence[str], numbers: Mapping[str, float]) -> Iterator[str]:
             f"detection_90 = {numbers['detection_90']:g}: must be above detection_50 ="
             f" {numbers['detection_50']:g}"
         )
-
-
-Given = str | Path | Sequence[Mapping[str, object]]
-"""A file of inspections, CSV or TOML, or tables with the same columns."""
-
-_HEADER = re.compile(r"\s*\[\[\s*[\"']?inspection[\"']?\s*\]\]")
 
 
 def read(given: Given) -> list[Inspection]:

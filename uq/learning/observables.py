@@ -17,6 +17,10 @@ from uq.text.element_names import same_name
 _BETWEEN = 16
 """Points per interval of declared depths at which the monotone curve is tabulated."""
 
+_REACH = 3.0  # standard errors of a measurement
+_SAME = 0.01  # relative difference of likelihoods considered equal
+_FAR = 1e6  # times the last declared depth
+
 
 @dataclass(frozen=True)
 class WornDepths:
@@ -104,11 +108,6 @@ class WornDepths:
             else:
                 curves[rows, 0] = 0.0
         return grid, curves
-
-
-_REACH = 3.0  # standard errors of a measurement
-_SAME = 0.01  # relative difference of likelihoods considered equal
-_FAR = 1e6  # times the last declared depth
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,11 @@ from uq.stats.importance_weights import Smoothed
 
 _WHOLE = "no row of this result agrees with"
 
+NO_OTHERS = (
+    "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
+    " stands for an inspected one; set [design] units = {} or more"
+)
+
 
 def contradictions(likelihoods: UnitLikelihoods, grids: Sequence[QuadratureGrid]) -> list[str]:
     """Return messages naming the smallest sets of inspections that no row is consistent with.
@@ -89,12 +94,6 @@ def _agreeing_worlds(rows: Mask, block: NDArray[np.intp], likelihoods: UnitLikel
     return agreeing if shared else np.asarray(agreeing.any(axis=1, keepdims=True))
 
 
-NO_OTHERS = (
-    "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
-    " stands for an inspected one; set [design] units = {} or more"
-)
-
-
 @dataclass(frozen=True)
 class Posterior:
     """The posterior: weighted rows of a result, given inspections.
@@ -105,14 +104,11 @@ class Posterior:
         Units that were not inspected.
     units : dict of str to WeightedRows
         Each inspected one, by label.
-    scale : IntegratedScale or None
     evidence : Evidence
     likelihoods : UnitLikelihoods
         Of the inspected units, in their order.
     law : SharedLaw or None
         Posterior law of the integrated input, if units share no other input.
-    not_integrated : tuple of str
-        Sentences on inputs that scale the observables but also affect other outputs.
     only_inspected : str
         Why no row represents an uninspected unit, or "". If not empty, `any_unit` describes the
         shared inputs only.
@@ -120,12 +116,20 @@ class Posterior:
 
     any_unit: WeightedRows
     units: Mapping[str, WeightedRows]
-    scale: IntegratedScale | None
     evidence: Evidence
     likelihoods: UnitLikelihoods
     law: SharedLaw | None
-    not_integrated: tuple[str, ...]
     only_inspected: str
+
+    @property
+    def scale(self) -> IntegratedScale | None:
+        """The integrated input."""
+        return self.likelihoods.scale
+
+    @property
+    def not_integrated(self) -> tuple[str, ...]:
+        """Sentences on inputs that scale the observables but also affect other outputs."""
+        return self.likelihoods.not_integrated
 
     @property
     def weights(self) -> list[Smoothed]:
@@ -190,10 +194,7 @@ def posterior(rows: Result, inspections: Sequence[Inspection], model_cv: float =
         else:
             only_inspected = NO_OTHERS.format(len(units) + 1)
     any_unit = uninspected(logs, evidence, likelihoods, place, rows.replicates, law)
-    not_integrated = likelihoods.not_integrated
-    return Posterior(
-        any_unit, units, scale, evidence, likelihoods, law, not_integrated, only_inspected
-    )
+    return Posterior(any_unit, units, evidence, likelihoods, law, only_inspected)
 
 
 class Taught(NamedTuple):

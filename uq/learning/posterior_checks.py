@@ -21,6 +21,17 @@ CAMPAIGNS = 2000
 STRANGE = 0.01
 """Prior-predictive p-value below which a warning is issued."""
 
+HOPELESS = (
+    "few rows agree with the inspections, and this takes many times the rows; where"
+    " these do not help either, the laws, the model (--model-error) or an inspection may be wrong"
+)
+
+_MODERATE = 100.0
+"""Factor by which rows can still reasonably be added."""
+
+_OPEN = 0.01
+"""Largest acceptable share of rows in which censoring hides the observable."""
+
 
 def strangeness(posterior: Posterior, seed: int, model_cv: float) -> float:
     """Return the prior-predictive p-value of the inspections [1]_.
@@ -89,18 +100,6 @@ def _log_probability(
     ordered = np.sort(values[~np.isnan(values)])
     below = np.searchsorted(ordered, values, side="right") / (len(ordered) + 1)
     return np.where(np.isnan(values), 0.0, np.log(2 * np.minimum(below, 1 - below)))
-
-
-HOPELESS = (
-    "few rows agree with the inspections, and this takes many times the rows; where"
-    " these do not help either, the laws, the model (--model-error) or an inspection may be wrong"
-)
-
-_MODERATE = 100.0
-"""Factor by which rows can still reasonably be added."""
-
-_OPEN = 0.01
-"""Largest acceptable share of rows in which censoring hides the observable."""
 
 
 def censoring(posterior: Posterior) -> str:

@@ -20,6 +20,9 @@ _HALVINGS = 60
 _COLDEST = 1e-9
 _LOG_ROOT = float(np.log(2 * np.pi) / 2)
 
+_WIDER = 2.0
+"""Widening factor of the last proposal: light tails bias estimates, heavy ones only cost rows."""
+
 
 class Proposal(NamedTuple):
     """A mixture of equal Student laws in some of the normal scores of the inputs.
@@ -88,7 +91,7 @@ def tempered(log_before: Floats, log_likelihood: Floats) -> Floats:
     -------
     ndarray, shape (n,)
         Weights with the likelihood raised to the largest power, at most 1, that keeps an effective
-        sample size of 100, or half of the possible one.
+        sample size of 100, or half of that of the rows that the likelihood allows.
     """
 
     def weights(power: float) -> Floats:
@@ -139,10 +142,6 @@ def fitted(
     return Proposal(columns, at[chosen], root)
 
 
-_WIDER = 2.0
-"""Widening factor of the last proposal: light tails bias estimates, heavy ones only cost rows."""
-
-
 class Repetition:
     """The rows of one sampler repetition, in order of rounds, with their importance weights.
 
@@ -150,7 +149,7 @@ class Repetition:
     ----------
     scores : ndarray, shape (own, inputs)
         Normal scores of the initial rows, from the study.
-    each : int
+    round_size : int
         Rows drawn per round.
     last : Proposal, optional
         Fixed proposal for all rows; by default a new one is fitted in each round.
@@ -158,8 +157,8 @@ class Repetition:
     Attributes
     ----------
     log_importance : ndarray, shape (n,)
-        Log prior importance weights: prior density over the mixture of all proposals used [1]_, in
-        proportion to their rows (balance heuristic). Weights are at most n / `own`.
+        Log prior importance weights: prior density over the mixture of the prior and all proposals
+        used [1]_, in proportion to their rows (balance heuristic). Weights are at most n / `own`.
 
     References
     ----------
@@ -186,12 +185,12 @@ class Repetition:
         log_likelihoods : sequence of ndarray, shape (n,)
             Of its rows as each inspected unit.
         columns : ndarray of int
-            The scores to draw from a law of their own.
+            The scores to draw from the proposal.
         rng : numpy.random.Generator
 
         Returns
         -------
-        ndarray, shape (each, inputs)
+        ndarray, shape (round_size, inputs)
             Normal scores.
         """
         proposal = self._last
@@ -219,10 +218,11 @@ class Repetition:
         columns: NDArray[np.intp],
         rng: np.random.Generator,
     ) -> "list[Repetition]":
-        """Restart the repetitions with one fixed proposal fitted to all rows drawn so far.
+        """Restart the repetitions from the rows of the study, with one fixed proposal.
 
-        The new rows are conditionally independent given the proposal. Rows used to fit a proposal
-        are biased: their weights are too small, because the proposal is denser near them.
+        The proposal is fitted to all rows so far, and widened. The new rows are conditionally
+        independent given the proposal. Rows used to fit a proposal are biased: their weights are
+        too small, because the proposal is denser near them.
 
         Parameters
         ----------

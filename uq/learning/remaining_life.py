@@ -18,7 +18,7 @@ from uq.learning.posterior_inputs import quantiles
 from uq.learning.posterior_result import as_unit, inspections_of, prior_of
 from uq.result.elements import Element
 from uq.result.result import Result
-from uq.result.weights import INTEGRATED, ONLY_INSPECTED, WEIGHT, WORLDS
+from uq.result.weights import INSPECTED, INTEGRATED, ONLY_INSPECTED, WEIGHT, WORLDS
 from uq.sampling.levels import SHARED
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows, per_sample
@@ -26,6 +26,13 @@ from uq.stats.intervals import Replicates, replicates_of_some
 from uq.text.quantities import read_threshold
 
 ENDS = (0.025, 0.975)
+
+PROBABILITIES = (0.05, 0.5, 0.95)
+ANY = ""
+"""Label of units never inspected."""
+
+_GONE = "hardly any row agrees with its inspections and still runs"
+_LEAST = 1e-3
 
 
 def over_shared(result: Result, element: Element, seen: float, time: float) -> dict[float, float]:
@@ -115,14 +122,6 @@ def check_times(times: Sequence[float], asked_by: str) -> None:
         raise InputError(f"{asked_by}: time = {wrong[0]:g}: must be finite, and 0 or more")
 
 
-PROBABILITIES = (0.05, 0.5, 0.95)
-ANY = ""
-"""Label of units never inspected."""
-
-_GONE = "hardly any row agrees with its inspections and still runs"
-_LEAST = 1e-3
-
-
 @dataclass(frozen=True)
 class Remaining:
     """Remaining life of a unit, conditional on survival until now.
@@ -180,7 +179,7 @@ def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
     units = {inspection: observable.time_unit for inspection, observable in observables.items()}
     if ONLY_INSPECTED not in result.dataset.attrs:
         yield from _of_unit(result, ANY, _last_seen(units), by)
-    for label in map(str, result.dataset["inspected"].values):
+    for label in map(str, result.dataset[INSPECTED].values):
         inspected = {
             inspection: unit for inspection, unit in units.items() if inspection.unit == label
         }
@@ -189,7 +188,7 @@ def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
 
 
 def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:
-    """Return the time of the latest inspection, expressed in each unit of time."""
+    """Return the latest time of an inspection, by unit of time."""
     latest: dict[str, float] = {}
     for inspection, unit in units.items():
         if inspection.time is not None:

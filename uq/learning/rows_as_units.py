@@ -27,9 +27,16 @@ from uq.stats.intervals import Replicates, replicates_of_some
 
 Places = NDArray[np.integer]
 
+_HUGE = 700.0
+
 
 def log_worth(evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting) -> Floats:
-    """Return leave-one-out log weights: each row given the inspections of the other units.
+    """Return leave-one-out log weights of the rows as uninspected units.
+
+    A row that agrees with an inspection makes its world probable, and would count as if it had been
+    inspected itself. The likelihood of the row is therefore replaced by the mean over rows of other
+    units of its world: its weight is then independent of its own inputs, given the shared ones, and
+    unbiased.
 
     Parameters
     ----------
@@ -44,8 +51,9 @@ def log_worth(evidence: Evidence, likelihoods: UnitLikelihoods, place: Nesting) 
     -------
     ndarray, shape (n, g)
         Log probability of the world of each row, for each value of an integrated input shared by
-        units (else g is 1). The mean likelihood of the inspected unit that the row represents is
-        taken over the other units of the world that represent it; -inf where there is none.
+        units (else g is 1), given all inspections. The mean likelihood of the inspected unit that
+        the row represents is taken over the other units of the world that represent it; -inf where
+        there is none.
     """
     values = [grid.values for grid in evidence.grids]
     shared = likelihoods.shares_scale
@@ -76,9 +84,6 @@ def _mean_of_others(logs: Floats, of_unit: Places, sample: Places) -> Floats:
     total = np.maximum(others(np.exp(logs - level)), 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(count > 0, np.log(total / count) + level, -np.inf)
-
-
-_HUGE = 700.0
 
 
 @dataclass(frozen=True)
@@ -163,8 +168,9 @@ def inspected(
 ) -> WeightedRows:
     """Return the weighted rows that represent an inspected unit.
 
-    If all rows form a single world, the likelihood bounds the weights: values of the integrated
-    input omitted by the grid do not raise the probability of the other inspections.
+    If all rows form a single world, the likelihood bounds the weights. The bound assumes that the
+    values of the integrated input omitted by the grid do not make the other inspections more
+    probable than the values of the grid do on average.
     """
     rows, grid, scale = likelihoods.blocks[unit], evidence.grids[unit], likelihoods.scale
     world, rest = likelihoods.world[rows], evidence.rest[unit]

@@ -17,6 +17,16 @@ Allowed = Callable[[Floats], Mask]
 """``allowed(places)``: whether inspections allow, in each row, the value at a prior probability,
 shape (n,)."""
 
+Places = NDArray[np.intp]
+
+_WIDE, _MOST = 0.05, 0.3
+_STEEPEST = 3.0
+_TINY = 1e-300
+
+_GOLDEN = (5**0.5 - 1) / 2
+_LEAST = 2.0**-53
+_FLAT, _MOST_TILT = 1e-6, 30.0
+
 
 def edges_of_rows(grid: QuadratureGrid, possible: Mask, allowed: Allowed | None) -> Floats:
     """Return the cell edges of the grid in each row, as prior probabilities.
@@ -51,13 +61,6 @@ def edges_of_rows(grid: QuadratureGrid, possible: Mask, allowed: Allowed | None)
                 outside = np.where(is_inside, outside, between)
             edges[cut, edge[cut]] = inside[cut]
     return edges
-
-
-Places = NDArray[np.intp]
-
-_WIDE, _MOST = 0.05, 0.3
-_STEEPEST = 3.0
-_TINY = 1e-300
 
 
 def masses(grid: QuadratureGrid, edges: Floats, worth: Floats) -> Floats:
@@ -123,11 +126,6 @@ def _of_moved(
     apart = np.gradient(centres(old))[cell]
     length = np.where(alone, np.maximum(end - start, apart), end - start)
     return np.asarray(here * length * np.exp(moved) * (1 + half**2 / 6))
-
-
-_GOLDEN = (5**0.5 - 1) / 2
-_LEAST = 2.0**-53
-_FLAT, _MOST_TILT = 1e-6, 30.0
 
 
 def prior_places(edges: Floats, worth: Floats, at: Floats) -> Floats:

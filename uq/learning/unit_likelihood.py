@@ -19,8 +19,9 @@ class UnitLikelihoods:
     """Likelihoods of the inspected units, given their rows and values of the integrated input.
 
     A world is one draw of the inputs that all units share: a sample, or all rows if units share at
-    most the integrated input. Each inspected unit uses separate rows in each world. Observables
-    common to inspections of several units are computed once.
+    most the integrated input. With several worlds, each inspected unit uses separate rows of each;
+    in a single world every row represents each unit, and observables common to inspections of
+    several units are computed once.
 
     Parameters
     ----------

@@ -17,6 +17,11 @@ Matrix = tuple[tuple[float, ...], ...]
 _LEAST_EIGENVALUE = 1e-9
 _NEAREST = 2e-9  # distance from -1 or 1; the least eigenvalue of two inputs is then large enough
 
+CellOf = Callable[[Floats], tuple[Floats, Floats]]
+"""Points of the unit interval -> P(X < x) and P(X <= x) of the values x of a discrete law."""
+
+_AT_ONCE = 4096  # proposals per batch
+
 
 def normal_correlations(ranks: Matrix) -> Floats:
     """Return the Pearson correlations of normal variables with the given Spearman correlations.
@@ -144,12 +149,6 @@ def _most(ranks: Matrix) -> float:
         if _is_definite(weaker):
             return percent / 100
     return 0.0
-
-
-CellOf = Callable[[Floats], tuple[Floats, Floats]]
-"""Points of the unit interval -> P(X < x) and P(X <= x) of the values x of a discrete law."""
-
-_AT_ONCE = 4096  # proposals per batch
 
 
 def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) -> Points:

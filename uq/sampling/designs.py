@@ -34,6 +34,9 @@ row whose seed each row uses."""
 NOISE = "noise"
 """Block of a crossed design of a random model, with the inputs of A and the seed of B."""
 
+MAX_SAMPLES = 2**30
+"""Largest number of points of one replicate, limited by the 30 bits of a Sobol' sequence."""
+
 
 @dataclass(frozen=True)
 class Layout:
@@ -116,10 +119,6 @@ CURVES = Layout(
     _of_curves,
     by_block=True,
 )
-
-
-MAX_SAMPLES = 2**30
-"""Largest number of points of one replicate, limited by the 30 bits of a Sobol' sequence."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Continuous laws of an uncertain parameter; scipy.stats is imported only if a law needs it.
 
 Each law is a small frozen table, as in a study file. Its distribution functions come from
-`scipy.stats`, or for the most common laws from the classes of `uq.sampling.scipy_laws`.
+`scipy.stats`, or for the most common laws from a subclass of `Elementary`, with the same bits.
 `uq.sampling.listed_values` has the laws of listed values, `uq.sampling.laws` all laws.
 """
 

@@ -3,8 +3,8 @@
 Reading order; each part imports only those above it:
 
     clusters              clusters of dependent rows
-    estimate              estimate
-    quantile_functions    quantile functions of the normal, Student
+    estimate              a number with its confidence interval
+    quantile_functions    quantile functions of the normal, Student and binomial laws
     roots                 roots of a function of one variable
     jumps                 error of a mean from discontinuities in stratified designs
     location_scale        maximum likelihood for censored Weibull and lognormal lives
@@ -18,7 +18,7 @@ Reading order; each part imports only those above it:
     tails                 tail index of an output, which determines the moments that exist
     uncertainty_exponent  uncertainty exponent of a basin boundary
     variance_components   variance components of nested rows
-    importance_weights    pareto-smoothed importance weights and their reliability diagnostics
+    importance_weights    Pareto-smoothed importance weights and their reliability diagnostics
     moments               mean and standard deviation with confidence intervals
     weighted_means        weighted means of numbers between 0 and 1, with confidence intervals
     counting              counts of failed units

@@ -12,6 +12,11 @@ from uq.stats.weighted_means import weighted_share
 
 _MOST_NUMBERS = 10_000_000
 
+_BELOW, _ABOVE = 0.15, 0.04
+"""Largest probability of a count up to the lower threshold, and above the upper, at a point."""
+
+_MOST_COUNTS = 200
+
 
 def more_than(ended: Floats, size: int, allow: int, are_alike: bool) -> Floats:
     """Return the probability that more than `allow` units of a fleet have ended, by sample.
@@ -155,12 +160,6 @@ def _of_any(ended: Floats, size: int, allow: int) -> Floats:
         added[:, 1:] += before[:, :-1] * p
         chance[low : high + 1] = (1 - share) * chance[low : high + 1] + share * added
     return np.asarray(chance[size].sum(axis=0))
-
-
-_BELOW, _ABOVE = 0.15, 0.04
-"""Largest probability of a count up to the lower threshold, and above the upper, at a point."""
-
-_MOST_COUNTS = 200
 
 
 def mixing_bounds(

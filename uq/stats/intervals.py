@@ -20,6 +20,20 @@ from uq.stats.clusters import Clusters, linearised_means
 from uq.stats.jumps import beyond_jumps
 from uq.stats.quantile_functions import normal, student
 
+CONFIDENCE = 0.95
+
+ONE_ROW = "a single row does not show any scatter"
+
+ROUNDING = 64 * np.finfo(float).eps
+"""Relative difference below which values are equal but for rounding."""
+
+Replicates = NDArray[np.integer] | None
+
+Ends = tuple[Any, Any]
+"""Lower and upper end of an interval, or of several (two arrays); NaN if unknown."""
+
+UNKNOWN: Ends = (np.nan, np.nan)
+
 FEW = 20
 """With fewer hits, or fewer misses, the exact interval of Clopper and Pearson is used.
 
@@ -67,21 +81,6 @@ def exact_interval(
     low = np.where(hits > 0, special.betaincinv(np.maximum(hits, 1e-9), misses + 1, tail), 0.0)
     high = np.where(misses > 0, special.betainccinv(hits + 1, np.maximum(misses, 1e-9), tail), 1.0)
     return low, high
-
-
-CONFIDENCE = 0.95
-
-ONE_ROW = "a single row does not show any scatter"
-
-ROUNDING = 64 * np.finfo(float).eps
-"""Relative difference below which values are equal but for rounding."""
-
-Replicates = NDArray[np.integer] | None
-
-Ends = tuple[Any, Any]
-"""Lower and upper end of an interval, or of several (two arrays); NaN if unknown."""
-
-UNKNOWN: Ends = (np.nan, np.nan)
 
 
 def is_constant(values: Floats) -> bool:
@@ -254,7 +253,7 @@ def share_interval(
     low, high : float
         Wilson's score interval [1]_. For replicates it uses the effective number of independent
         rows, and Student's t in place of the normal quantile [2]_. If hits or misses are few, it is
-        the interval of Clopper and Pearson (`uq.stats.intervals`), which is conservative. The
+        the interval of Clopper and Pearson (`exact_interval`), which is conservative. The
         effective number of rows is then at most the number of rows, since the scatter of replicates
         cannot be estimated from few hits.
 

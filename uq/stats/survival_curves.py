@@ -9,6 +9,14 @@ from scipy import special
 from uq.contract import Floats, Mask
 from uq.stats.intervals import CONFIDENCE, Ends
 
+DRAWS = 4000
+"""Number of simulated curves; the coverage is then accurate to 0.3 %."""
+
+POINTS = 300
+"""Largest number of times at which curves are simulated, spread over the odds of having ended."""
+
+_HALVINGS = 9  # bisections of the logarithm of the tail probability
+
 
 class MatchedBeta(NamedTuple):
     """Beta laws by their means and variances, each of shape (k,); a variance may be 0."""
@@ -175,15 +183,6 @@ def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> SurvivalCurve:
     variance[share == 0] = np.nan if censored.any() else 0.0
     place = np.searchsorted(ends, time, side="right")
     return SurvivalCurve(np.append(1.0, share)[place], np.append(0.0, variance)[place])
-
-
-DRAWS = 4000
-"""Number of simulated curves; the coverage is then accurate to 0.3 %."""
-
-POINTS = 300
-"""Largest number of times at which curves are simulated, spread over the odds of having ended."""
-
-_HALVINGS = 9  # bisections of the logarithm of the tail probability
 
 
 def simultaneous_band(values: Floats, censored: Mask, time: Floats, *, known_at_once: bool) -> Ends:
