@@ -37,7 +37,7 @@ RUNNERS = ("execution", "explore")
 """Packages that run models."""
 
 DEFERRED = {
-    ("uq.assess.answer.study_answer", "uq.render.html.answer.notebook"),
+    ("uq.assess.answer.answer_sentences", "uq.render.html.answer.notebook"),
     ("uq.render.html.pictures", "uq.plots.FIGURES"),
 }
 """Imports upwards: an answer shows itself in a notebook; `plots` is the face of the figures."""

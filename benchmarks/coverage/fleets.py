@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 from benchmarks.coverage.scaled import CAUTIOUS, LIFE, lognormal_term
 from benchmarks.coverage.tally import Tally
 from uq.assess.fleet_numbers import HIGH, LOW, FleetNumbers
-from uq.assess.fleets import Units
+from uq.assess.fleet_units import Units
 from uq.assess.scale_laws import IndependentScale
 from uq.result.element import Element
 from uq.result.nesting import Nesting

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from benchmarks.coverage.fleets import weighted_normals
 from benchmarks.coverage.problems import Inputs, Settings, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.assess.level_shares import by_level
+from uq.assess.components_by_level import by_level
 from uq.assess.summary import summarise
 from uq.assess.summary_facts import summary_facts
 from uq.contract import Model, Output

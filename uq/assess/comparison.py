@@ -1,4 +1,4 @@
-"""Two studies of one model: what was changed, and how their outputs differ."""
+"""Compare two studies of one model: their inputs, and the differences of their statistics."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ from math import isnan
 import pandas as pd
 
 from uq.assess.input_changes import ChangedEntry, OnlyChange, changes, only_change
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.pairing import Pair
 from uq.assess.sample import SelectedRows, in_categories, whole
-from uq.assess.scaling import population
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.summary import REGIME, Shares, Summary, summarise
 from uq.contract import Output
@@ -231,7 +231,8 @@ def comparison(first: Result, second: Result) -> Comparison:
     summaries = [summarise(result, asked) for result in results]
     pair = Pair(first, second)
     elements = [
-        {element.name: element for element in population(rows, outputs)} for rows in pair.rows
+        {element.name: element for element in elements_with_laws(rows, outputs)}
+        for rows in pair.rows
     ]
     changed = changes(*results)
     return Comparison(

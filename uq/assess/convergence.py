@@ -1,4 +1,4 @@
-"""Convergence: estimates as the rows came in, and the error of sampling beside other errors."""
+"""Estimates from growing numbers of rows, and the sampling error beside other errors."""
 
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -91,7 +91,7 @@ class RunningEstimate(NamedTuple):
 
 def running(result: Result, output: str | None = None) -> Iterator[tuple[int, RunningEstimate]]:
     """Yield the lines of `running_estimates`: number of samples, estimate from them."""
-    result.refuse_weights("running estimates")
+    result.refuse_if_weighted("running estimates")
     names = None
     if output is not None:
         whole = output if is_whole(output) else whole_name(output)
@@ -127,7 +127,7 @@ def enough(result: AnyResult, output: str | None = None) -> pd.DataFrame:
         rows do not help.
     """
     result = Result.of(result)
-    result.refuse_weights("the error of sampling")
+    result.refuse_if_weighted("the error of sampling")
     outputs, names = summarise(result).outputs, result.output_names
     rows = result.independent
     plain = [name for name in names if not is_error(name, names)]

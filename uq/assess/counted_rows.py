@@ -1,4 +1,4 @@
-"""Rows that count alike, each with the value or the life that was computed."""
+"""Sample of rows of equal weight: estimates from counts, order statistics, Kaplan-Meier."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""The sample of a sensitivity method: the place of each row of its design in a result.
+"""Rows of a result in the layout that a sensitivity method requires.
 
 The rows themselves do not show which input changes from row to row of a group: a factor recovered
 from a product is rounded, and seems to change where only what it multiplies does; a discrete input

@@ -1,4 +1,4 @@
-"""Effects of an input on an output: average slopes, and the probability of an event over it."""
+"""Average slope of an output over an input, and probability of an event along an input."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass

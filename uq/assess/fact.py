@@ -1,4 +1,4 @@
-"""Facts of a result: numbers with their sentence and the functions that computed them, in a tree.
+"""Fact: numbers with their sentence and the functions that computed them; facts form a tree.
 
 Every verb writes its numbers once, as a tree of facts. The renderers read it: JSON the numbers,
 terminal and HTML the sentences with their keys, ``uq trace`` functions and rows.

@@ -1,12 +1,12 @@
-"""A result and what several tables and figures show of it, each computed once."""
+"""Findings: everything that tables and figures show of a result, each computed once."""
 
 from collections.abc import Iterator
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from uq.assess.components_by_level import ByLevel, by_level
 from uq.assess.fleet import Fleet, fleet_of
-from uq.assess.level_shares import ByLevel, by_level
 from uq.assess.regimes import boundary
 from uq.assess.row_inputs import independent_inputs
 from uq.assess.sensitivities import Sensitivities, TargetIndices, sensitivities
@@ -86,7 +86,7 @@ class Findings:
 
     @cached_property
     def levels(self) -> ByLevel:
-        """The variance components (`uq.assess.level_shares.by_level`)."""
+        """The variance components (`uq.assess.components_by_level.by_level`)."""
         return by_level(self.result)
 
     @cached_property

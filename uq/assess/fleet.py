@@ -1,4 +1,4 @@
-"""Fleets: when the first of some units ends, and how many have ended by a time."""
+"""Fleets of a result: time of the first end, numbers ended by a time; as table and as facts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,10 +9,10 @@ import numpy as np
 
 from uq.assess.fact import Fact
 from uq.assess.fleet_numbers import Banded, FleetNumbers
-from uq.assess.fleets import Units, units_of
+from uq.assess.fleet_units import Units, units_of
+from uq.assess.integrated_inputs import without_effect
 from uq.assess.population import BY_WEIGHTS
 from uq.assess.row_inputs import inputs_of
-from uq.assess.scaling import without_effect
 from uq.assess.summary import why_no_intervals
 from uq.assess.summary_facts import quality_facts
 from uq.errors import InputError, choices

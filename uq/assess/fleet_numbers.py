@@ -1,4 +1,4 @@
-"""Numbers of fleets of one size: expected value, and 5 and 95 % points over worlds."""
+"""Expected numbers of fleets of one size, with 5 and 95 % points over worlds."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from scipy import special
 
 from uq.assess import random_effects
 from uq.assess.failed_rows import bounds, with_failed_at
-from uq.assess.fleets import Units
+from uq.assess.fleet_units import Units
 from uq.assess.population import first_step
 from uq.sampling.designs import several
 from uq.stats.estimate import Estimate

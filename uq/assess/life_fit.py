@@ -261,7 +261,7 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     True
     """
     result = Result.of(result)
-    result.refuse_weights("laws fitted to lives")
+    result.refuse_if_weighted("laws fitted to lives")
     rows = result.independent
     independent = rows.replicates is None
     lines = {

@@ -1,4 +1,4 @@
-"""Pairing of the rows of two results, and the correlation of their estimates.
+"""Pair the rows of two results, and correlate their estimates.
 
 Two studies with the same seed draw the same numbers. Where this pairs their rows or replicates,
 and the pairs are independent of each other, the difference is known better than from independent

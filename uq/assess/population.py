@@ -1,4 +1,4 @@
-"""Probabilities and quantiles of a population: rows with weights, each the law of a life."""
+"""Sample of rows with weights or laws of lives: probabilities and quantiles of the mixture."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

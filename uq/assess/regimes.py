@@ -1,4 +1,4 @@
-"""The regimes of a result compared: inputs, outputs, boundary, and the variance between them."""
+"""Regimes compared: their inputs, outputs, boundary, and the variance between them."""
 
 from typing import Any
 
@@ -141,7 +141,7 @@ def regimes(result: AnyResult) -> xr.Dataset:
     result = Result.of(result)
     if "regime" not in result.dataset:
         raise InputError("this result has no regimes to compare")
-    result.refuse_weights("a comparison of regimes")
+    result.refuse_if_weighted("a comparison of regimes")
     rows = result.independent
     shares = {
         name: statistic

@@ -1,4 +1,4 @@
-"""The rows of a result as those of another study: weighted, and laws of lives replaced."""
+"""Weights that turn the rows of a result into those of another study; laws of lives replaced."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 from scipy import special
 
+from uq.assess.integrated_inputs import integrated
 from uq.assess.row_inputs import EVERYWHERE, Inputs
-from uq.assess.scaling import integrated
 from uq.contract import Floats
 from uq.errors import InputError, RunError
 from uq.result.element import Element

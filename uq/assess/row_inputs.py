@@ -1,4 +1,4 @@
-"""The inputs of rows: values, the laws that these follow, and dependence."""
+"""Values of the inputs in each row, with their laws and dependence."""
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""A sample: the rows of an element with the estimates from them, whatever kind of rows they are."""
+"""Sample: what can be estimated from the rows of an element, whatever kind of rows they are."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable

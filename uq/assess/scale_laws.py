@@ -1,4 +1,4 @@
-"""Conditional law of the life of each row, given the inputs that are not integrated exactly."""
+"""Law of the life of a row given the inputs that are not integrated: P(T < t), moments."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

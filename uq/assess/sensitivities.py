@@ -1,4 +1,4 @@
-"""Sensitivity indices of a result, by every method."""
+"""Sensitivity indices of a result, by every method that its design feeds."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -166,7 +166,7 @@ def sensitivities(
         When the design cannot feed the method, or there is no such output.
     """
     result.refuse_empty()
-    result.refuse_weights("sensitivity indices")
+    result.refuse_if_weighted("sensitivity indices")
     if regime is not None:
         result = result.within_regime(regime)
         why = "within a regime the inputs depend on each other"

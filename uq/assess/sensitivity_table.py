@@ -1,4 +1,4 @@
-"""Sensitivity indices as arrays and as a tree of facts."""
+"""Sensitivity indices as xarray arrays and as a tree of facts."""
 
 from functools import partial
 from math import isfinite

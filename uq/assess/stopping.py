@@ -1,4 +1,4 @@
-"""When a run may stop: interim estimates at fixed sizes, with valid intervals.
+"""When a run with `until` stops: interim estimates at fixed sizes, with valid intervals.
 
 An interval that is recomputed often enough is narrow by chance at some point. A run therefore
 estimates at a few sizes fixed beforehand, each half of the next, at a confidence that makes up for
@@ -14,8 +14,8 @@ import numpy as np
 
 from uq.assess.chosen_targets import wholes
 from uq.assess.design_sample import sample_of
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.population import as_sample
-from uq.assess.scaling import population
 from uq.assess.sensitivities import indices_of_target
 from uq.assess.targets import IndexTarget, lightened, number_of
 from uq.indices.methods import METHODS, kinds_with_intervals
@@ -162,7 +162,7 @@ def _statistics(design: "DesignTable", result: Result) -> Iterator[InterimEstima
     rows = result.independent
     replicate = rows.replicates
     names = {element.name for element in rows.named_elements(until.output)}
-    for element in population(rows, [until.output.partition("[")[0]]):
+    for element in elements_with_laws(rows, [until.output.partition("[")[0]]):
         if element.name in names:
             estimate = statistic(element, until, replicate, level)
             units = "1" if until.threshold is not None else element.units

@@ -1,4 +1,4 @@
-"""The summary of a result: how rows ended, the regimes, and the statistics of each output."""
+"""Summary of a result: status and regimes of rows, and the statistics of each output."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
@@ -7,10 +7,10 @@ from itertools import chain
 import numpy as np
 
 from uq.assess.failed_rows import failed_share_bounds
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.life_fit import Fit, fits_of
 from uq.assess.reweighting import Weighting
 from uq.assess.sample import in_categories, share, share_of
-from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic, StatisticKind
 from uq.assess.statistics.table import STATISTICS
 from uq.assess.stopping import why_ended
@@ -181,7 +181,7 @@ def summarise(
     """
     analysis = analysis or result.analysis
     if fits:
-        result.refuse_weights("laws fitted to lives")
+        result.refuse_if_weighted("laws fitted to lives")
     notes = _notes(result)
     if regime is not None:
         result = result.within_regime(regime)
@@ -191,7 +191,9 @@ def summarise(
     outputs, most = dict[str, Described](), 0
     plain = plain or regime is not None  # within a regime, inputs have another law
     names = result.shown_outputs(analysis)
-    elements = population(rows, names, plain=plain) if not weighting else weighting.elements(names)
+    elements = (
+        elements_with_laws(rows, names, plain=plain) if not weighting else weighting.elements(names)
+    )
     for element in elements:  # one at a time in memory
         outputs[element.name] = _described(element, context, fits, parts)
         most = max(most, int(element.failed.sum()))

@@ -6,14 +6,14 @@ from itertools import chain, groupby
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from uq.assess.components_by_level import ByLevel, switching
 from uq.assess.fact import Fact, Functions
 from uq.assess.input_changes import InputMoments, OnlyChange
-from uq.assess.level_shares import ByLevel, switching
 from uq.assess.life_fit import Fit, fits_of
+from uq.assess.nested_table import LevelShares
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.statistics.table import EMPTY, JSON_ORDER, STATISTICS
 from uq.assess.summary import REGIME, Described, Summary, status_counts
-from uq.assess.variance_by_level import LevelShares
 from uq.result.elements import independent_rows
 from uq.result.nesting import nesting_of
 from uq.stats import estimate_json

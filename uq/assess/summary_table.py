@@ -1,4 +1,4 @@
-"""The summary of a result as a table."""
+"""Summary of a result as a pandas table: outputs in rows, statistics in columns."""
 
 from math import inf, isfinite, nan
 from typing import Any

@@ -1,4 +1,4 @@
-"""Lifetimes: the probability of a longer life than each time."""
+"""Survival curve of a life, with pointwise intervals and a simultaneous band."""
 
 from typing import Any
 
@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from uq.assess.failed_rows import outer, with_failed_at
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.population import as_sample
 from uq.assess.sample import Sample
-from uq.assess.scaling import population
 from uq.contract import Floats
 from uq.result.result import AnyResult, Result
 from uq.stats.intervals import Ends
@@ -67,7 +67,7 @@ def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Datas
     result = Result.of(result)
     rows = result.independent
     wanted = {element.name for element in rows.lifetimes(output)}
-    whole = population(rows, [output.partition("[")[0]], plain=plain)
+    whole = elements_with_laws(rows, [output.partition("[")[0]], plain=plain)
     chosen = [element for element in whole if element.name in wanted]
     samples = [as_sample(element, rows.replicates) for element in chosen]
     time = _times(samples)

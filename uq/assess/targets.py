@@ -1,4 +1,4 @@
-"""Targets of sensitivity indices: an output, its logarithm, rank, rate or event in each row."""
+"""Targets of sensitivity indices: an output, its logarithm, rank, rate or event, row by row."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""Two fidelities: the rows of a result, and many more rows of a cheap twin of the same model.
+"""Estimate from the rows of a result and many more rows of a cheap twin of its model.
 
 The twin is an output that the model can compute alone, or the same outputs with settings that make
 a row cheap, such as fewer modes.
@@ -125,7 +125,7 @@ def two_fidelities(result: AnyResult, model: str | None = None) -> pd.DataFrame:
 
 def with_twin(result: Result, model: str | None = None) -> TwoFidelities:
     """Return the estimates of `two_fidelities` as records."""
-    result.refuse_weights("estimates with a twin")
+    result.refuse_if_weighted("estimates with a twin")
     with first_fault_alone():
         study = study_from_text(result.dataset.attrs["study"], "study of this result", model)
     twin = study.analysis.twin

@@ -1,4 +1,4 @@
-"""A result under other laws of its inputs: the same rows, weighted."""
+"""Statistics of a result under other laws of its inputs: the same rows, weighted."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -83,13 +83,13 @@ def what_if(result: AnyResult, changes: Mapping[str, Any]) -> pd.DataFrame:
        sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     result = Result.of(result)
-    answered = answer(result, changes)
+    answered = reweighted_summary(result, changes)
     table = table_of(answered.summary)
     table.attrs = {"effective_rows": answered.effective_rows, "pareto_k": answered.pareto_k}
     return table
 
 
-def answer(
+def reweighted_summary(
     result: Result,
     changes: Mapping[str, Any],
     asked: AnalysisTable | None = None,
@@ -117,7 +117,7 @@ def weighting_of(
     old : Inputs, optional
         Inputs of these rows under the laws of the study, if already read.
     """
-    result.refuse_weights("what if")
+    result.refuse_if_weighted("what if")
     if why := result.why_no_statistics:
         raise InputError(f"what if: the rows of a '{result.design_name}' design {why}")
     rows = result.independent

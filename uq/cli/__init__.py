@@ -5,7 +5,7 @@ Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
 Reading order; each part imports only those above it:
 
     printing        text, numbers and tables on a terminal, and JSON
-    progress        the progress of a run
+    progress        progress of a run, live on a terminal, else in occasional lines
     options         arguments and options shared by several verbs of ``uq``, with their help
     streams         standard streams that are closed, full or lack characters
     compare         the output of ``uq compare``
@@ -13,12 +13,13 @@ Reading order; each part imports only those above it:
     guide           output of ``uq`` without a command: next steps
     models          terminal output of ``uq models``
     sensitivity     terminal output of ``uq sensitivity`` and ``uq levels``
-    summary_tables  summary of a result, also under other laws, as tables of 80 columns
+    summary_tables  summary and answer of a result as tables of 80 columns
     trace           terminal output of ``uq trace``
     check           terminal output of ``uq check`` and ``uq plan``, before a run
     rare_event      terminal output of ``uq rare-event``
     simulate        the command ``uq simulate``
     run             output of the verbs that compute rows of a result
+    what_if         terminal output of ``uq what-if``
     status          terminal output of ``uq status``, ``uq verify`` and ``uq row``
     learning        terminal output of ``uq update`` and ``uq next-inspection``
     verbs           the verbs of ``uq``: what each takes, and what it calls

@@ -92,7 +92,7 @@ def _unit(study: Study, name: str) -> str:
 
 def _show_sampled(study: Study) -> None:
     """Print the law of each input as stated and in the rows."""
-    from uq.assess.sampled_inputs import MAX_ROWS, sampled_inputs, sampled_ranks
+    from uq.assess.sampled_laws import MAX_ROWS, sampled_inputs, sampled_ranks
 
     count = -(-min(rows(study), MAX_ROWS) // study.design.rows_of_a_sample)
     inputs = sampled_inputs(study)

@@ -5,10 +5,10 @@ from math import isfinite
 from pathlib import Path
 
 from uq.assess.answer.wording import NumberTarget
-from uq.assess.level_shares import by_level
+from uq.assess.components_by_level import by_level
+from uq.assess.nested_table import SOLVER, LevelShares
 from uq.assess.sensitivities import Sensitivities, Values, lines
 from uq.assess.summary_facts import levels_facts
-from uq.assess.variance_by_level import SOLVER, LevelShares
 from uq.cli.printing import grid, heading, note, paragraph, print_json, title
 from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
 from uq.result.result import Result

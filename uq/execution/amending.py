@@ -24,7 +24,7 @@ from uq.execution.recomputed_row import (
 from uq.execution.row_folder import folder_of, history
 from uq.files.netcdf_files import is_intact
 from uq.result import result_file
-from uq.result.weights import refuse_weights
+from uq.result.weights import refuse_if_weighted
 from uq.result.workload import workload_of
 from uq.study.definition import Study, refusal_to_extend
 
@@ -54,7 +54,7 @@ def study_of(path: Path, model: str | None = None) -> Study:
         recorded = run.study, run.identity, run.model_version, run.samples
     else:
         ds = result_file.open_result(path)
-        refuse_weights(ds, "rows computed again or added")
+        refuse_if_weighted(ds, "rows computed again or added")
         names = ("study", "study_identity", "model_version", "samples")
         text, identity, version, samples = (ds.attrs[name] for name in names)
         recorded = text, identity, version, int(samples)

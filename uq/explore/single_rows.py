@@ -241,7 +241,7 @@ def row_again(
     """Find a row of a result and compute it again; see `row`."""
     if sum(given is not None for given in (number, lowest, near_quantile)) != 1:
         raise InputError("give one of: the number of a row, --lowest, --near-quantile")
-    result.refuse_weights("a row computed again")
+    result.refuse_if_weighted("a row computed again")
     choice = None
     if lowest is not None:
         choice = lowest_row(result, lowest)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uq.assess.integrated_inputs import scalers
 from uq.assess.row_inputs import Inputs, inputs_of
-from uq.assess.scaling import scalers
 from uq.contract import Floats, Output
 from uq.learning.importance import own_rows
 from uq.learning.observables import Observable

@@ -6,9 +6,9 @@ from math import inf
 
 import numpy as np
 
+from uq.assess.integrated_inputs import elements_with_laws, inputs_of
 from uq.assess.population import Population
 from uq.assess.scale_laws import Surviving
-from uq.assess.scaling import inputs_of, population
 from uq.contract import Floats, Output
 from uq.errors import InputError, choices
 from uq.learning.inspections import Inspection, InspectionKind
@@ -203,7 +203,7 @@ def _of_unit(
     counted = rows.dataset[WEIGHT].values > 0
     part = replicates_of_some(rows.replicates, counted)
     rows = rows.take(counted)
-    for element in population(rows, [name for name, _ in shown_lives(rows)]):
+    for element in elements_with_laws(rows, [name for name, _ in shown_lives(rows)]):
         seen = last_seen.get(element.units, 0.0)
         times = [*by] or [t for t in thresholds.get(element.output, ()) if t > seen]
         life = _of_life(element, part, label, seen, times)

@@ -38,7 +38,7 @@ from uq.result.variables import outputs_of
 from uq.result.weights import (
     has_rounds,
     has_weights,
-    refuse_weights,
+    refuse_if_weighted,
     row_weights,
     sample_weights,
     stand_for_any_unit,
@@ -271,14 +271,14 @@ class Result:
         """Whether rows represent any unit: no inspection concerns the units."""
         return stand_for_any_unit(self.dataset)
 
-    def refuse_weights(self, question: str) -> None:
+    def refuse_if_weighted(self, question: str) -> None:
         """Refuse a question that weighted rows cannot answer.
 
         Raises
         ------
         InputError
         """
-        refuse_weights(self.dataset, question)
+        refuse_if_weighted(self.dataset, question)
 
     # Samples, units, repeats, and parts of the rows
 

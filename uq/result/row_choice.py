@@ -110,7 +110,7 @@ def near_quantile_row(result: Result, probability: float, name: str) -> Choice:
         raise InputError(
             f"--near-quantile {probability:g}: must lie between 0 and 1; write 0.05 for 5 %"
         )
-    result.refuse_weights("--near-quantile")
+    result.refuse_if_weighted("--near-quantile")
     if why := result.why_no_statistics:
         raise InputError(
             f"no quantiles: the rows of a '{result.design_name}' design {why}; choose a row by its"

@@ -131,7 +131,7 @@ def sample_weights(rows: xr.Dataset, place: Nesting, question: str) -> Floats | 
     return np.asarray(most / most.mean())
 
 
-def refuse_weights(ds: xr.Dataset, question: str) -> None:
+def refuse_if_weighted(ds: xr.Dataset, question: str) -> None:
     """Refuse a question that weighted rows cannot answer.
 
     Parameters

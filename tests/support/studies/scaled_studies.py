@@ -2,8 +2,8 @@
 
 from computed import study_of
 
+from uq.assess.integrated_inputs import elements_with_laws, why_not_integrated
 from uq.assess.population import Population
-from uq.assess.scaling import population, why_not_integrated
 from uq.result.elements import independent_rows, replicates_of
 from uq.result.result import Result
 
@@ -29,7 +29,7 @@ def scaled_study(uncertain, design=None, samples=400, **tables):
 
 def populated(ds):
     rows = independent_rows(ds)
-    element = next(population(Result(rows), ["life"]))
+    element = next(elements_with_laws(Result(rows), ["life"]))
     return Population(element, replicates_of(rows)), why_not_integrated(Result(rows), element)
 
 

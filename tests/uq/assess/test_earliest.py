@@ -7,7 +7,7 @@ import pytest
 from computed import asking, kinds, linear, with_output
 
 from uq.assess.answer.answer import answer, conclude
-from uq.assess.earliest import earliest_rows
+from uq.assess.distinguishing_inputs import earliest_rows
 from uq.assess.findings import Findings
 from uq.render.html.answer import fragment
 from uq.render.html.embedded_rows import rows_inside

@@ -9,7 +9,7 @@ from fleet_studies import LISTED, SHARED, brute_force, fleet_result, fleet_study
 import uq as api
 from benchmarks.coverage import fleets as counted
 from uq.assess.fleet import fleet_facts, fleet_of
-from uq.assess.fleets import units_of
+from uq.assess.fleet_units import units_of
 from uq.assess.random_effects import ONE_UNIT, Noisy
 from uq.assess.summary_table import summary
 from uq.errors import InputError

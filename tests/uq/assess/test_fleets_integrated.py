@@ -10,7 +10,7 @@ from scipy import special, stats
 
 from benchmarks.coverage import fleets as counted
 from uq.assess.fleet import fleet_of
-from uq.assess.fleets import units_of
+from uq.assess.fleet_units import units_of
 from uq.result.elements import elements_of
 from uq.result.result import Result
 from uq.stats.counting import at_most

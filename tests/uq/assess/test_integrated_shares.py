@@ -9,8 +9,8 @@ from computed import computed, once, study_of
 from nested_studies import CHANCE, OWN, SHARED
 
 import uq as api
+from uq.assess.components_by_level import by_level
 from uq.assess.fleet import fleet_of
-from uq.assess.level_shares import by_level
 from uq.errors import InputError
 from uq.result.result import Result
 

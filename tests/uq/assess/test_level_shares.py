@@ -8,7 +8,7 @@ from nested_studies import CHANCE, LEVELS, OWN, SHARED, VARIANCES, nested, neste
 from noisy_studies import noisy
 
 import uq as api
-from uq.assess.level_shares import by_level
+from uq.assess.components_by_level import by_level
 from uq.errors import InputError
 from uq.result.result import Result
 from uq.result.variables import error_name

@@ -7,7 +7,7 @@ from nested_studies import nested, nested_result
 
 import uq as api
 from uq.assess.pairing import Kinship, kinship
-from uq.assess.sampled_inputs import drawn_inputs, laws_and_values
+from uq.assess.sampled_laws import drawn_inputs, laws_and_values
 from uq.assess.sensitivities import ONE_ROW, sensitivities
 from uq.assess.statistics.moments import between_share
 from uq.assess.stopping import interim_estimate

@@ -5,7 +5,7 @@ import pytest
 from nested_studies import CHANCE, LEVELS, OWN, SHARED, VARIANCES
 from scipy import stats
 
-from uq.assess.variance_by_level import shares_of
+from uq.assess.nested_table import shares_of
 from uq.stats.variance_components import nested_shares
 
 

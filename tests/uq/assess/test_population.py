@@ -9,9 +9,9 @@ from scaled_studies import NORMAL, WHOLE, lognormal, populated, scaled_study
 from scipy import special
 
 from uq.assess.comparison import compare
+from uq.assess.integrated_inputs import elements_with_laws, integrated
 from uq.assess.population import Population
 from uq.assess.row_inputs import inputs_of
-from uq.assess.scaling import integrated, population
 from uq.assess.summary_table import summary
 from uq.assess.survival import survival
 from uq.result.elements import independent_rows
@@ -191,7 +191,7 @@ def test_each_level_is_integrated_by_itself():
     shared = lognormal(0.3, level="shared")
     ds = computed(scaled_study(WHOLE | {"b": shared}, {"units": 4, "repeats": 1}, samples=50))
     rows = independent_rows(ds)
-    element = next(population(Result(rows), ["life"]))
+    element = next(elements_with_laws(Result(rows), ["life"]))
     inputs = inputs_of(Result(rows))
     unit_part, world = (
         integrated(Result(rows), element.declared, inputs, {level})[0]
@@ -252,7 +252,7 @@ def test_means_and_variances_of_logarithms_are_those_of_the_law(case):
     """By quadrature of the probability that the life of each row is shorter."""
     inputs, tables, _ = CASES[case]
     ds = computed(scaled_study(inputs, samples=8, **tables))
-    law = next(population(Result(ds), ["life"])).law
+    law = next(elements_with_laws(Result(ds), ["life"])).law
     mean, variance = law.moments
     logs = np.log(ds["life"].values)
     y = np.linspace(-8, 8, 16_001)

@@ -7,7 +7,7 @@ from scaled_studies import NORMAL, WHOLE, lognormal, populated, scaled_study
 from scipy import special, stats
 
 from uq.assess.comparison import compare
-from uq.assess.scaling import population
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.result.result import Result
 from uq.stats.clusters import Clusters
 from uq.stats.importance_weights import effective_rows
@@ -22,7 +22,7 @@ def test_the_difference_of_two_probabilities_is_not_widened_for_outliers_twice()
     first, second = (computed(with_seed(scaled_study(WHOLE, **rare), seed)) for seed in (1, 2))
     key = ("life", "P(<0.2)")
     row = compare(first, second).loc[key]
-    numbers = [next(population(Result(ds), ["life"])).below(0.2) for ds in (first, second)]
+    numbers = [next(elements_with_laws(Result(ds), ["life"])).below(0.2) for ds in (first, second)]
     expected = difference(*map(share_to_compare, numbers), 0.0)
     assert (row["low"], row["high"]) == pytest.approx((expected.low, expected.high))
     alone = difference(*map(weighted_share, numbers), 0.0)

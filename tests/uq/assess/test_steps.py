@@ -6,7 +6,7 @@ from asked_indices import sensitivities
 from computed import computed, study_of
 
 from uq.assess.row_inputs import independent_inputs
-from uq.assess.sampled_inputs import compare, laws_and_values
+from uq.assess.sampled_laws import compare, laws_and_values
 from uq.errors import InputError
 from uq.result.result import Result
 

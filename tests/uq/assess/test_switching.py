@@ -5,7 +5,7 @@ import pytest
 from nested_studies import nested_result
 
 import uq as api
-from uq.assess.level_shares import by_level
+from uq.assess.components_by_level import by_level
 from uq.result.nesting import nesting_of
 from uq.result.result import Result
 

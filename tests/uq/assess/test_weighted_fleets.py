@@ -9,8 +9,8 @@ from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
 import uq as api
+from uq.assess.components_by_level import by_level
 from uq.assess.fleet import fleet_of
-from uq.assess.level_shares import by_level
 from uq.errors import InputError
 from uq.explore.updating import update
 from uq.learning.posterior_result import as_unit

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from benchmarks.coverage import scaled as counted
 from benchmarks.coverage.tally import LOW
 from uq.assess.population import Population
-from uq.assess.what_if import answer, read_changes, what_if, what_if_facts
+from uq.assess.what_if import read_changes, reweighted_summary, what_if, what_if_facts
 from uq.cli.app import app
 from uq.contract import Output
 from uq.errors import InputError, RunError
@@ -47,7 +47,9 @@ def result():
 
 
 def test_the_law_of_what_only_scales_is_replaced_exactly(result):
-    changed = answer(Result(result), {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0})
+    changed = reweighted_summary(
+        Result(result), {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0}
+    )
     life = what_if_facts(changed).json["outputs"]["life"]
     z = result["z"].values
     below = special.ndtr((np.log(0.8) - np.log(2.0) - z / 2) / 0.9)
@@ -60,7 +62,7 @@ def test_the_law_of_what_only_scales_is_replaced_exactly(result):
 
 
 def test_the_same_laws_change_nothing(result):
-    document = what_if_facts(answer(Result(result), {"uncertain.z.sd": 1.0})).json
+    document = what_if_facts(reweighted_summary(Result(result), {"uncertain.z.sd": 1.0})).json
     plain = summarised(result)
     assert document["effective_rows"] == 1000 and document["pareto_k"] is None
     for name in ("life", "y"):
@@ -141,7 +143,7 @@ def test_a_multiple_and_listed_values_are_weighted(result):
     share = rows["z"].values.mean()
     assert row["mean"] == pytest.approx(share / (share + 3 * (1 - share)))
     factor = rows["b"].values / rows["a"].values
-    changed = answer(Result(rows), {"uncertain.b.upper": 1.0})
+    changed = reweighted_summary(Result(rows), {"uncertain.b.upper": 1.0})
     assert changed.effective_rows == pytest.approx((factor < 1).sum(), rel=0.02)
 
 
@@ -193,7 +195,7 @@ def test_a_scale_may_leave_the_values_of_the_rows():
     rows = computed(
         study({"a": {"distribution": "uniform", "lower": 1.0, "upper": 2.0}, "z": NORMAL})
     )
-    changed = answer(Result(rows), {"uncertain.a.upper": 4.0})
+    changed = reweighted_summary(Result(rows), {"uncertain.a.upper": 4.0})
     life = what_if_facts(changed).json["outputs"]["life"]
     least = 0.8 * np.exp(-rows["z"].values / 2)
     below = ((least - 1) / 3).clip(0, 1).mean()
@@ -214,7 +216,7 @@ def test_a_single_row_says_why_a_number_is_missing():
     rows = computed(study(samples=1))
     for document in (
         summarised(rows),
-        what_if_facts(answer(Result(rows), {"uncertain.a.sigma": 0.4})).json,
+        what_if_facts(reweighted_summary(Result(rows), {"uncertain.a.sigma": 0.4})).json,
     ):
         life = document["outputs"]["life"]
         below = life["thresholds"]["0.8"]
@@ -231,9 +233,9 @@ def test_a_single_row_says_why_a_number_is_missing():
 
 def test_rows_that_all_failed_say_nothing():
     rows = computed(study(samples=20, settings={"fail_above": -99.0}))
-    statistics = what_if_facts(answer(Result(rows), {"uncertain.a.sigma": 0.6})).json["outputs"][
-        "life"
-    ]
+    statistics = what_if_facts(reweighted_summary(Result(rows), {"uncertain.a.sigma": 0.6})).json[
+        "outputs"
+    ]["life"]
     assert statistics["failed"] == 20 and statistics["thresholds"]["0.8"]["below"]["value"] is None
 
 

@@ -5,10 +5,10 @@ import pytest
 from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.population import Population
 from uq.assess.row_inputs import inputs_of
 from uq.assess.scale_laws import ConditionalScale, LearntScale
-from uq.assess.scaling import population
 from uq.explore.updating import update
 from uq.learning.inspections import read_tables
 from uq.learning.integrated_input import dependent_outputs
@@ -23,7 +23,7 @@ SEEN = 1.5e6
 
 def element_of(told, samples=2000):
     unit = as_unit(update(wear(samples=samples), told), "A")
-    return next(population(Result(unit), ["life"])), unit["rate"].values
+    return next(elements_with_laws(Result(unit), ["life"])), unit["rate"].values
 
 
 def truncated(rate):
@@ -136,6 +136,6 @@ def test_no_end_of_an_interval_lies_before_a_time_that_the_unit_outlived():
     rows["life"].attrs.pop("scales")
     told = {"unit": "A", "output": "life", "kind": "survived", "time": SEEN}
     unit = as_unit(update(rows, [told]), "A")
-    (element,) = population(Result(unit), ["life"])
+    (element,) = elements_with_laws(Result(unit), ["life"])
     assert element.law is None
     assert Population(element, None).quantile(0.01).low >= SEEN

@@ -6,8 +6,8 @@ from computed import computed, study_of
 from learnt_studies import DEPTH, RATE, lognormal, measured, wear
 from scipy import stats
 
+from uq.assess.components_by_level import by_level
 from uq.assess.fleet import fleet_of
-from uq.assess.level_shares import by_level
 from uq.assess.summary import summarise
 from uq.errors import InputError, RunError
 from uq.explore.updating import update

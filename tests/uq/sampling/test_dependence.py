@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from input_studies import BELL, UNIFORM, inputs_of, refusal, tables
 from scipy import stats
 
-from uq.assess.sampled_inputs import sampled_inputs, sampled_ranks
+from uq.assess.sampled_laws import sampled_inputs, sampled_ranks
 from uq.errors import InputError
 from uq.sampling.dependence import correlated, matrix_problem
 from uq.study.row_sampling import row_block

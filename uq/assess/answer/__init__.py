@@ -2,22 +2,23 @@
 
 Reading order; each part imports only those above it:
 
-    wording             inputs and outputs in words
-    measured_indices    index of each input, and its separation from the others
-    contributions       contributions of inputs
-    earliest            the rows that end first, and their distinguishing inputs
-    limits              ranges of the deciding input in which the unwanted side is rare on
-    tolerance_bound     tolerance bound that can be promised of an output, and its likely range
-    levels              variance components by level, and how intermingled the regimes are
-    promised_bounds     promised bounds of an output
-    repeat_interval     prediction interval
-    parts               events and quantities of an answer, with their sentences
-    rankings            ranking of inputs for a target; indistinguishable inputs are grouped
-    sufficiency         sufficiency of the rows
-    quantities          quantities of an answer: promises, likely ranges, and probabilities
-    remedies            remedies: effects of a tighter tolerance, and each piece of advice
-    study_answer        the answer of a study
-    tighter_tolerances  tighter tolerances
-    advice              advice by rules: mend, add rows, measure, tighten, or nothing
-    answer              the answer of a study, computed once from its assessments
+    wording            inputs and outputs in words
+    compared_indices   index of each input, with the half-width of its difference from another
+    earliest           the rows that end first, their distinguishing inputs and regimes
+    limits             ranges of the leading input over which an event is rare on average
+    tolerance_bound    tolerance bound that can be promised of an output, and its likely range
+    contributions      shares of single inputs and groups, with directions, sizes and sentences
+    bound_choice       choose the bound to promise, or quantiles in its place
+    tolerance_effects  effect of a tighter tolerance on one statistic, before and after
+    rankings           ranking of inputs by their contribution to a target, with its sentences
+    events             probabilities of the events that a study asks about, with their drivers
+    leading_level      the level with most of the variance
+    repeat_interval    prediction interval: where another seed would most likely end
+    quantities         the answer for an element: bound, likely range, events, ranking
+    sufficiency        what the rows do not settle, and the sample size that would
+    piece_of_advice    one piece of advice: its rule, its sentence, the effects it names
+    answer_sentences   the answer in sentences and as a tree of facts
+    tightening         effects of halving the scatter of inputs, by importance weights
+    advice             advice by rules: mend, add rows, measure, tighten, or nothing
+    answer             the answer of a study, computed once from its assessments
 """

@@ -3,13 +3,14 @@
 from collections.abc import Iterator, Sequence
 from math import ceil, isfinite, isinf, isnan
 
+from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution
-from uq.assess.answer.levels import VarianceComponents
-from uq.assess.answer.parts import Event, Quantity
-from uq.assess.answer.remedies import Advice
-from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.events import Event
+from uq.assess.answer.leading_level import VarianceComponents
+from uq.assess.answer.piece_of_advice import Advice
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.sufficiency import MOST, Enough, bounds_unsettled, needed
-from uq.assess.answer.tighter_tolerances import tighten
+from uq.assess.answer.tightening import tighten
 from uq.assess.answer.wording import ASSUMED, CHOSEN, called, called_together, mark_of, share_text
 from uq.assess.findings import Findings
 from uq.result.result import Result

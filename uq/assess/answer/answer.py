@@ -6,10 +6,10 @@ from math import isfinite
 from weakref import WeakKeyDictionary
 
 from uq.assess.answer.advice import advise
-from uq.assess.answer.levels import VarianceComponents, levels_of, mixing, starts_alike
-from uq.assess.answer.parts import Event
-from uq.assess.answer.quantities import event, only_ranked, quantities
-from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.answer_sentences import Answer
+from uq.assess.answer.events import Event, event
+from uq.assess.answer.leading_level import VarianceComponents, levels_of, mixing, starts_alike
+from uq.assess.answer.quantities import only_ranked, quantities
 from uq.assess.answer.sufficiency import enough_of, settled
 from uq.assess.answer.wording import assumptions, called, sentence
 from uq.assess.findings import Findings

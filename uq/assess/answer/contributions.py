@@ -1,20 +1,28 @@
-"""Contributions of inputs: shares, directions and sizes, and their sentences."""
+"""Shares of single inputs and groups, with directions, sizes and sentences."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
-from math import isnan
-from typing import Any
+from math import expm1, log1p
 
-from uq.assess.answer.wording import DisplayUnit, called, called_together, joined, sentence
-from uq.assess.effects import effects
+from uq.assess.answer.compared_indices import Measured, are_tied
+from uq.assess.answer.wording import (
+    DisplayUnit,
+    called,
+    called_together,
+    joined,
+    twin_of,
+)
+from uq.assess.chosen_targets import chosen
+from uq.assess.effects import Effect, effects
 from uq.assess.fact import Fact
-from uq.indices.index import ST
-from uq.indices.methods import indices_of
+from uq.assess.findings import Findings
+from uq.assess.row_inputs import independent_inputs
+from uq.assess.targets import IndexTarget, split_name
+from uq.indices.index import IndexKind
 from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
-from uq.text.numbers import capitalized, grouped
+from uq.study.file import Tied
 
 SMALL = 0.05
 """A smaller share of the variance does not lead."""
@@ -168,159 +176,98 @@ class Contribution:
         return "; ".join(effect.sentence(name) for effect, name in changes_by_name)
 
 
-@dataclass(frozen=True)
-class Ranking:
-    """Ranking of the inputs by their contribution to a target.
+ALIKE = 0.5
+"""Twins are listed together if the ratio of the smaller index to the larger is at least this."""
 
-    Attributes
-    ----------
-    target, method : str
-    kind : str
-        Key of the index that ranks.
-    index_meaning : str
-        Meaning of the index, such as a share of the variance.
-    contributions : tuple of Contribution
-        The largest first; only those that exceed inputs without effect.
-    reason : str
-        Reason for a missing ranking: no index, or nothing settled; "" otherwise.
-    rows_factor : float
-        Factor on the sample size that would settle it; NaN if not applicable.
-    is_flat : bool
-        Whether it is settled that no input contributes measurably.
-    rivals : tuple of str
-        Inputs one of which would lead with another seed, with 95 %; none if unknown.
-    share_of : str
-        The variance that an index is a share of: ``its variance``; "" of other indices and of
-        events.
-    unexplained : Estimate
-        Share of the variance that no single input explains, where inputs are ranked by first-order
-        indices.
-    runner_up : float
-        The largest index of the inputs ranked after the leader.
-    totals : dict of str to float
-        Input -> total index, the largest first, where an expansion of these rows gives it.
-    remedy : str
-        Way to show interactions if `totals` are unknown.
-    """
 
-    target: str
-    method: str
-    kind: str = ""
-    index_meaning: str = ""
-    contributions: tuple[Contribution, ...] = ()
-    reason: str = ""
-    rows_factor: float = float("nan")
-    is_flat: bool = False
-    rivals: tuple[str, ...] = ()
-    share_of: str = ""
-    unexplained: Estimate = NOTHING
-    runner_up: float = 0.0
-    totals: Mapping[str, float] = field(default_factory=dict)
-    remedy: str = ""
+_STEPS = (0.1, 0.01, 0.001)
 
-    def fact(self, result: Result | None = None) -> Fact:
-        """Return the ranking with its sentence; `result` is the ranked one."""
-        notes: tuple[str, ...] = ()
-        if result is not None and result.is_nested:
-            used = grouped(len(result.first_rows))
-            notes = (f"the index rests on {used} of these rows, the first of each sample",)
-        members: dict[str, Any] = {
-            "sentence": self.sentence,
-            "target": self.target,
-            "method": self.method,
-            "index": self.kind,
-            "reason": self.reason,
-            "rows_factor": estimate_json.number(self.rows_factor),
-            "contributions": [contribution.fact for contribution in self.contributions],
-        }
-        if not isnan(self.unexplained.value):
-            members["unexplained"] = estimate_json.numbers(self.unexplained)
-            members["totals"] = dict(self.totals)
-        mentions: list[tuple[str, ...]] = [("rows_factor",)]
-        leader = self.leader
-        if leader is not None:
-            mentions = [("contributions", "0", "inputs", name) for name in leader.inputs]
-            mentions += [("unexplained",)] * bool(self.beyond_single)
-        return Fact(
-            members,
-            (partial(indices_of, self.method, self.kind),),
-            {"totals": (partial(indices_of, EXPANSION, ST.key),)},
-            mentions=tuple(mentions),
-            notes=notes,
+
+_WITHIN = 4.0  # standard deviations that a step may span
+
+
+def groups_of(result: Result, measured: list[Measured]) -> Iterator[list[Measured]]:
+    """Yield groups of inputs that are twins or have indistinguishable indices."""
+    laws = {
+        name: None if isinstance(law, Tied) else law.model_dump(exclude={"source"})
+        for name, law in result.study.uncertain.items()
+    }
+
+    def are_twins(candidate: Measured, other: Measured) -> bool:
+        less, more = sorted((candidate.index.value, other.index.value))
+        same = twin_of(candidate.name) == twin_of(other.name) and less >= ALIKE * more
+        return (
+            same and laws[candidate.name] is not None and laws[candidate.name] == laws[other.name]
         )
 
-    @property
-    def leader(self) -> Contribution | None:
-        """The largest contribution, if settled."""
-        return self.contributions[0] if self.contributions and not self.reason else None
+    left = list(measured)
+    while left:
+        first, others = left[0], left[1:]
+        tied = [other for other in others if are_tied(first, other)]
+        group = [first, *tied]
+        group += [
+            other
+            for other in others
+            if other not in group and any(are_twins(other, member) for member in group)
+        ]
+        yield group
+        left = [candidate for candidate in left if candidate not in group]
 
-    @property
-    def leads(self) -> bool:
-        """Return whether the largest contribution is large."""
-        leader = self.leader
-        if leader is None or (leader.share_of_variance and leader.value < SMALL):
-            return False
-        return self.of_event or not self.may_be_overturned
 
-    @property
-    def of_event(self) -> bool:
-        """Return whether the target is an event."""
-        return self.target.startswith("P(")
+def effects_of(
+    findings: Findings, method: str, name: str, inputs: Sequence[str]
+) -> dict[str, Effect]:
+    """Return the effects that have an interval; without one, no direction is clear."""
+    rows = findings.rows
+    targets: list[IndexTarget] = list(chosen(rows, method, [name]))
+    if len(targets) != 1:
+        return {}
+    columns, part = independent_inputs(rows), rows.replicates
+    by_input = effects(targets[0].values, columns, part, inputs)
+    return {name: effect for name, effect in by_input.items() if effect.slope.has_interval}
 
-    @property
-    def may_be_overturned(self) -> bool:
-        """Return whether another input may contribute more, with interactions, than the leader.
 
-        A total index is at most the index alone and all that no single input explains.
-        """
-        if self.leader is None or isnan(self.unexplained.value):
-            return False
-        if self.totals:
-            return next(iter(self.totals)) not in self.leader.sure
-        most = self.unexplained.high if self.unexplained.has_interval else self.unexplained.value
-        return most > max(self.leader.value - self.runner_up, 0.0) and most > SMALL
+def contribution_of(
+    group: Sequence[Measured],
+    kind: IndexKind,
+    target: str,
+    moved: Mapping[str, Effect],
+    verbs: tuple[str, str],
+    units: Mapping[str, DisplayUnit],
+) -> Contribution:
+    """Return the contribution of a group of inputs, with directions where all are known."""
+    names = tuple(member.name for member in group)
+    form = split_name(target)[0]
+    changes = tuple(
+        _change(moved[name], form, verbs, units[name]) for name in names if name in moved
+    )
+    return Contribution(
+        names,
+        tuple(member.index for member in group),
+        kind.unit == "variance",
+        changes if len(changes) == len(names) else (),
+        doubtful=tuple(member.name for member in group if not member.counts),
+    )
 
-    @property
-    def denies_a_leader(self) -> bool:
-        """Return whether, with confidence, no single input contributes much."""
-        return self.is_flat or (self.leader is not None and not self.leads)
 
-    @property
-    def sentence(self) -> str:
-        """The leading contribution, or the reason why it is unknown."""
-        if self.reason:
-            return sentence(self.reason)
-        leader = self.leader
-        if leader is None:
-            return ""
-        if leader.share_of_variance and leader.value < SMALL:
-            text = f"No single input explains much: {leader.words} {leader.size}{self._of}."
-            return " ".join(filter(None, (text, self.beyond_single)))
-        verb = "contribute" if len(leader.inputs) > 1 else "contributes"
-        if leader.doubtful:
-            verb = "may contribute"
-        alone = " alone" * self.may_be_overturned
-        text = f"{capitalized(leader.words)}{alone} {verb} most: {leader.size}{self._of}."
-        return " ".join(filter(None, (text, self.beyond_single)))
-
-    @property
-    def beyond_single(self) -> str:
-        """Share that no single input explains, if it could change the order; else ""."""
-        if not self.may_be_overturned or self.of_event:
-            return ""
-        text = f"No single input explains {whole_percent(self.unexplained)}"
-        if not self.totals:
-            return f"{text}: interactions could change the order; {self.remedy}."
-        first = [(name, total) for name, total in self.totals.items()][:2]
-        named = joined([f"{called(name)} {100 * min(total, 1.0):.0f} %" for name, total in first])
-        return f"{text}; with interactions (HDMR), the largest contributions are those of {named}."
-
-    @property
-    def _of(self) -> str:
-        return f" of {self.share_of}" if self.share_of else ""
-
-    @property
-    def with_effect(self) -> str:
-        """The leading contribution, with direction and size."""
-        effect = self.leader.effect if self.leader is not None and self.leads else ""
-        return " ".join(filter(None, (self.sentence, effect and sentence(effect))))
+def _change(
+    effect: Effect, form: str, verbs: tuple[str, str], of_input: DisplayUnit
+) -> AverageEffect:
+    """Return the change of a target with a usual step of an input."""
+    if effect.direction == 0 or effect.of_values or form == "rank":
+        return AverageEffect(effect.direction, verbs=verbs)
+    amount = ""
+    if effect.logarithmic:
+        size = next((s for s in _STEPS if log1p(s) <= _WITHIN * effect.sd), _STEPS[-1])
+        step, by = f"{100 * size:g} %", log1p(size)
+    else:
+        step, by, amount = "one standard deviation", effect.sd, of_input.text(effect.sd)
+    value, low, high = (by * end for end in effect.slope.numbers)
+    unit = DisplayUnit()
+    if form == "log":
+        value, low, high = (100 * expm1(end) for end in (value, low, high))
+        unit = DisplayUnit("%")
+    elif form == "P":
+        value, low, high = 100 * value, 100 * low, 100 * high
+        unit = DisplayUnit("percentage points")
+    return AverageEffect(effect.direction, step, Estimate(value, low, high), unit, verbs, amount)

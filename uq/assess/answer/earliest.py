@@ -1,4 +1,4 @@
-"""The rows that end first, and their distinguishing inputs."""
+"""The rows that end first, their distinguishing inputs and regimes, in sentences."""
 
 import shlex
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from uq.assess.answer.wording import (
     share_text,
     unit_of_input,
 )
-from uq.assess.earliest import (
+from uq.assess.distinguishing_inputs import (
     FEWEST,
     Apart,
     RegimeOfFirst,

@@ -1,16 +1,11 @@
-"""Quantities of an answer: promises, likely ranges, and probabilities."""
+"""The answer for each element of an output: bound, likely range, events, ranking."""
 
-from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import isfinite, nan
 
 import numpy as np
 
-from uq.assess.answer.contributions import Ranking
-from uq.assess.answer.earliest import earliest
-from uq.assess.answer.measured_indices import method_for
-from uq.assess.answer.parts import Event, Quantity
-from uq.assess.answer.promised_bounds import (
+from uq.assess.answer.bound_choice import (
     CONFIDENCE,
     COVERAGE,
     MIDDLE,
@@ -22,33 +17,31 @@ from uq.assess.answer.promised_bounds import (
     quantile_of,
     without_value,
 )
-from uq.assess.answer.rankings import ranking_of
-from uq.assess.answer.tolerance_bound import Range
+from uq.assess.answer.earliest import Earliest, earliest
+from uq.assess.answer.events import Event, events_of
+from uq.assess.answer.rankings import Ranking, ranking_of_element
+from uq.assess.answer.repeat_interval import repeated_quantile, repeated_share
+from uq.assess.answer.tolerance_bound import Range, ToleranceBound
 from uq.assess.answer.wording import (
     ASSUMED,
-    DisplayUnit,
+    called_together,
     element_called,
     mark_of,
+    sentence,
     unit_for,
-    unit_of_input,
 )
-from uq.assess.chosen_targets import chosen
-from uq.assess.effects import EventCurve, event_curve
+from uq.assess.fact import Fact
 from uq.assess.findings import Findings
-from uq.assess.row_inputs import independent_inputs
 from uq.assess.statistic import Context, Statistic
 from uq.assess.statistics.counts import never_ending
 from uq.assess.statistics.quantiles import B_LIVES, quantiles
 from uq.assess.statistics.tolerance import tolerance
 from uq.assess.summary import Described, resolution_of, summarise
-from uq.assess.targets import lightened, number_of, split_name
-from uq.errors import InputError
-from uq.indices.methods import METHODS
 from uq.result.elements import Element
 from uq.result.result import Result
+from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING
 from uq.study.file import AnalysisTable
-from uq.text.numbers import threshold
 from uq.text.units import readable
 
 LOW, HIGH = 0.05, 0.95
@@ -57,6 +50,157 @@ LOW, HIGH = 0.05, 0.95
 _RANGE = {"low": LOW, "median": MIDDLE, "high": HIGH}
 
 _NARROW = 0.003  # range over values below which three digits show few steps
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """The answer for one element of an output.
+
+    Attributes
+    ----------
+    name, words, meaning : str
+        Of the element; in words, with and without its place within the output.
+    promise : ToleranceBound or None
+    range : Range or None
+    events : tuple of Event
+    ranking : Ranking or None
+    wanted : {"above", "below", ""}
+        The side of its values that is wanted; "" where that is not known, and for lives.
+    earliest : Earliest or None
+        Of a life that does not end with a success: which rows end first, and why.
+    scaled_by : tuple of str
+        Quantities whose values are assumed and to which all its lives are proportional.
+    own_error : Fact or None
+        Effect of the stated errors of the rows on the promise.
+    b_lives : tuple of Statistic
+        Of a life.
+    """
+
+    name: str
+    words: str
+    meaning: str
+    promise: ToleranceBound | None = None
+    range: Range | None = None
+    events: tuple[Event, ...] = ()
+    ranking: Ranking | None = None
+    wanted: str = ""
+    earliest: Earliest | None = None
+    scaled_by: tuple[str, ...] = ()
+    own_error: Fact | None = None
+    b_lives: tuple[Statistic, ...] = ()
+
+    def fact(self, result: Result | None = None) -> Fact:
+        """Return everything about the quantity."""
+        rows = None if result is None else result.independent
+        parts = {
+            "promise": self.promise and self.promise.fact,
+            "range": self.range and self.range.fact,
+            "own_error": self.own_error,
+        }
+        of_rows = {name: replace(part, rows=rows) for name, part in parts.items() if part}
+        events = Fact({event.name: event.fact(result) for event in self.events})
+        members = {"words": self.words} | of_rows | {"events": events}
+        if self.earliest is not None:
+            members["earliest"] = self.earliest.fact
+        if (repeated := self.repeated).sentence:
+            members["another_seed"] = replace(repeated, rows=rows)
+        if self.ranking is not None:
+            members["ranking"] = self.ranking.fact(result)
+        lives = {
+            life.key[-1]: Fact(estimate_json.whole(life.estimate), life.by) for life in self.b_lives
+        }
+        more = {"b_lives": Fact(lives, rows=rows), "scaled_by": list(self.scaled_by)}
+        return Fact(members, more=more)
+
+    @property
+    def subject(self) -> str:
+        """Its name, and the assumed quantities that scale it."""
+        if not self.scaled_by:
+            return sentence(self.words)
+        are = "are" if len(self.scaled_by) > 1 else "is"
+        named = called_together(self.scaled_by)
+        return f"{sentence(self.words)} Its scale is that of {named}, which {are} assumed."
+
+    @property
+    def is_life(self) -> bool:
+        """Return whether the quantity is a life."""
+        return self.promise is not None and self.promise.is_life
+
+    @property
+    def is_success(self) -> bool:
+        """Return whether the quantity is a life that ends with a success."""
+        return self.promise is not None and self.promise.ends == "succeed"
+
+    @property
+    def wants_more(self) -> bool | None:
+        """Return whether more of its events are better; None if unknown.
+
+        Of successes; of lives that end, fewer; of values above a threshold, as the study states.
+        """
+        if self.is_life:
+            return self.is_success
+        return self.wanted == "above" if self.wanted else None
+
+    def with_limits(self) -> "Quantity":
+        """Return the quantity with limits of the leading inputs of its events."""
+        if (more := self.wants_more) is None:
+            return self
+        return replace(self, events=tuple(event.with_limit(more) for event in self.events))
+
+    @property
+    def ranking_sentence(self) -> str:
+        """The leading contribution; "" if there is no ranking and an event states the reason."""
+        causes = [event.decided_by for event in self.events]
+        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in causes):
+            return ""
+        return self.ranking.with_effect
+
+    @property
+    def output(self) -> str:
+        """The output that it is an element of."""
+        return self.name.partition("[")[0]
+
+    @property
+    def place(self) -> str:
+        """Its place among the elements of the output."""
+        return self.words.removeprefix(self.meaning).removeprefix(", ")
+
+    @property
+    def first(self) -> Event | None:
+        """The event that comes first, if nothing can be promised."""
+        if self.promise is not None and self.promise.sentence:
+            return None
+        return next((event for event in self.events if event.sentence), None)
+
+    @property
+    def repeated(self) -> Fact:
+        """Prediction interval for another seed."""
+        if self.first is None:
+            return repeated_quantile(self.promise, self.range, self.ranking)
+        first = self.first
+        return repeated_share(first.predicate, first.share, self.ranking, first.by)
+
+    @property
+    def others(self) -> list[Event]:
+        """The events after the first."""
+        return [event for event in self.events if event is not self.first]
+
+    @property
+    def head(self) -> list[str]:
+        """Sentences on promise, subject, error and likely range, as far as known."""
+        sentences = [] if self.promise is None else [self.promise.sentence]
+        if self.first is not None:
+            sentences += [self.first.sentence, self.first.decided_by, self.first.limited]
+        sentences.append(self.subject)
+        sentences += [] if self.promise is None else [self.promise.basis]
+        sentences += [] if self.own_error is None else [self.own_error.sentence]
+        sentences += [] if self.range is None else [self.range.sentence]
+        return [*filter(None, sentences)]
+
+    @property
+    def lines(self) -> list[str]:
+        """The sentences of `head`, then each other event with its main driver."""
+        return [*self.head, *(event.with_cause for event in self.others)]
 
 
 def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
@@ -101,7 +245,9 @@ def only_ranked(findings: Findings) -> list[Quantity]:
         values = np.abs(element.values[np.isfinite(element.values)])
         if not len(values):
             continue
-        ranking = _ranking(findings, element, unit_for(element.units, float(np.median(values))))
+        ranking = ranking_of_element(
+            findings, element, unit_for(element.units, float(np.median(values)))
+        )
         words, meaning = element_called(result, element), readable(element.meaning)
         ranked.append(Quantity(element.name, words, meaning, ranking=ranking))
     return ranked
@@ -183,8 +329,8 @@ def _quantity(
             is_life=element.is_lifetime,
             by=by,
         ),
-        tuple(_events(findings, described, element)),
-        _as_computed(_ranking(findings, element, unit), described),
+        tuple(events_of(findings, described, element)),
+        _as_computed(ranking_of_element(findings, element, unit), described),
         wanted,
         earliest(findings, element, unit, context.replicate)
         if _may_end_badly(findings.result, element)
@@ -206,99 +352,9 @@ def _may_end_badly(result: Result, element: Element) -> bool:
     return element.is_lifetime and not element.declared.success and not result.has_weights
 
 
-def _ranking(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking | None:
-    method = method_for(findings.result, event=False)
-    if method is None:
-        return None
-    target = number_of(element)
-    name = (target if METHODS[method].scale_free else lightened(target)).name
-    verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
-    if element.is_angle:  # only the ranking refers to the signed value
-        verb = ("lowers its signed value", "raises its signed value")
-    try:
-        ranking = ranking_of(findings, name, method, verb)
-    except InputError as refused:
-        return Ranking(name, method, reason=f"no ranking of the inputs: {refused}")
-    if element.is_angle and ranking.index_meaning:
-        ranking = replace(
-            ranking, index_meaning=f"{ranking.index_meaning}, of the angle with its sign"
-        )
-    if split_name(name)[0]:
-        return ranking
-    # Changes of the output itself are in its unit, as are indices that are not relative.
-    kind = next((kind for kind in METHODS[method].kinds if kind.key == ranking.kind), None)
-    of_index = unit if kind is not None and kind.unit == "output" else DisplayUnit()
-    contributions = tuple(
-        replace(
-            contribution,
-            changes=tuple(replace(change, unit=unit) for change in contribution.changes),
-            unit=of_index,
-        )
-        for contribution in ranking.contributions
-    )
-    return replace(ranking, contributions=contributions)
-
-
 def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | None:
     """Return a ranking, marked if it is of lives as computed while other numbers integrate."""
     facts = [statistic.facts.get("integrated") for statistic in described.parts["integrated"]]
     if ranking is None or not ranking.index_meaning or not any(facts):
         return ranking
     return replace(ranking, index_meaning=f"{ranking.index_meaning}, of lives as computed")
-
-
-def _events(findings: Findings, described: Described, element: Element) -> Iterator[Event]:
-    side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
-    for statistic in described.parts["thresholds"]:
-        if statistic.key[-1] != side or statistic.at is None:
-            continue
-        at = threshold(statistic.at, element.units)
-        predicate = f"exceed {at}"
-        if element.is_lifetime:  # an end at the threshold itself does not count
-            ended = element.values[~element.censored]
-            at_it = element.law is None and (ended == statistic.at).any()
-            predicate = f"{end_verb(element)} {'before' if at_it else 'within'} {at}"
-        predicate += " in magnitude" * element.is_angle
-        target = f"P({element.name}{sign}{statistic.at!r})"
-        undefined = statistic.facts.get("undefined") or 0.0
-        yield replace(event(findings, target, predicate, statistic), undefined=undefined)
-
-
-def event(findings: Findings, target: str, predicate: str, statistic: Statistic) -> Event:
-    """Return an event: its probability, ranking, and probability over the leading input.
-
-    Parameters
-    ----------
-    findings : Findings
-    target : str
-        Its name as a target of indices.
-    predicate : str
-        The event, in words.
-    statistic : Statistic
-        Its probability.
-    """
-    best = statistic.best
-    outcome = Event(target, predicate, best.estimate, statistic.failed, by=best.by)
-    method = method_for(findings.result, event=True)
-    if method is None or best.estimate.value in (0.0, 1.0):
-        return outcome
-    verb = ("lowers the probability", "raises the probability")
-    try:
-        ranking = ranking_of(findings, target, method, verb)
-    except InputError as refused:
-        why = str(refused)
-        if not split_name(target)[2]:  # a regime that does not occur in the ranked rows
-            why = f"no ranking of the inputs: no row that it could rest on is {predicate}"
-        return replace(outcome, ranking=Ranking(target, method, reason=why))
-    outcome = replace(outcome, ranking=ranking)
-    if ranking.leader is None:
-        return outcome
-    over, rows = ranking.leader.inputs[0], findings.ranked.rows
-    curve = curve_over(rows, target, method, over)
-    return replace(outcome, over=over, curve=curve, over_unit=unit_of_input(findings.result, over))
-
-
-def curve_over(rows: Result, target: str, method: str, over: str) -> EventCurve | None:
-    """Return the probability of an event over an input."""
-    hits = next(chosen(rows, method, [target])).values
-    return event_curve(hits, independent_inputs(rows)[over], rows.replicates)

@@ -1,30 +1,34 @@
-"""Ranking of inputs for a target; indistinguishable inputs are grouped."""
+"""Ranking of inputs by their contribution to a target, with its sentences."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from math import expm1, isfinite, log1p, nan
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import isfinite, isnan, nan
+from typing import Any
 
+from uq.assess.answer.compared_indices import AGAIN, Measured, are_tied, measured_inputs, method_for
 from uq.assess.answer.contributions import (
     EXPANSION,
     SMALL,
-    AverageEffect,
     Contribution,
-    Ranking,
+    contribution_of,
+    effects_of,
+    groups_of,
+    whole_percent,
 )
-from uq.assess.answer.measured_indices import Measured, measured_inputs
-from uq.assess.answer.repeat_interval import AGAIN
-from uq.assess.answer.wording import DisplayUnit, called, twin_of, unit_of_input
-from uq.assess.chosen_targets import chosen
-from uq.assess.effects import Effect, effects
+from uq.assess.answer.wording import DisplayUnit, called, joined, sentence, twin_of, unit_of_input
+from uq.assess.fact import Fact
 from uq.assess.findings import Findings
-from uq.assess.row_inputs import independent_inputs, why_dependent
-from uq.assess.targets import FORMS, IndexTarget, split_name
-from uq.errors import choices
+from uq.assess.row_inputs import why_dependent
+from uq.assess.targets import FORMS, lightened, number_of, split_name
+from uq.errors import InputError, choices
 from uq.indices.index import S1, ST, IndexKind, Indices
-from uq.indices.methods import fed_by
+from uq.indices.methods import METHODS, fed_by, indices_of
+from uq.result.elements import Element
 from uq.result.result import Result
-from uq.stats.estimate import Estimate
-from uq.study.file import Tied
+from uq.stats import estimate_json
+from uq.stats.estimate import NOTHING, Estimate
+from uq.text.numbers import capitalized, grouped
 
 GOAL = 0.1
 """Half-width of the interval of an index, of the largest if it has a unit, at which it is known."""
@@ -32,14 +36,167 @@ GOAL = 0.1
 MOST_TIED = 3
 """With more indistinguishable inputs than this, there is no ranking."""
 
-ALIKE = 0.5
-"""Twins are listed together if the ratio of the smaller index to the larger is at least this."""
 
 LEAST = 0.01
 """A smaller index is not listed."""
 
-_STEPS = (0.1, 0.01, 0.001)
-_WITHIN = 4.0  # standard deviations that a step may span
+
+@dataclass(frozen=True)
+class Ranking:
+    """Ranking of the inputs by their contribution to a target.
+
+    Attributes
+    ----------
+    target, method : str
+    kind : str
+        Key of the index that ranks.
+    index_meaning : str
+        Meaning of the index, such as a share of the variance.
+    contributions : tuple of Contribution
+        The largest first; only those that exceed inputs without effect.
+    reason : str
+        Reason for a missing ranking: no index, or nothing settled; "" otherwise.
+    rows_factor : float
+        Factor on the sample size that would settle it; NaN if not applicable.
+    is_flat : bool
+        Whether it is settled that no input contributes measurably.
+    rivals : tuple of str
+        Inputs one of which would lead with another seed, with 95 %; none if unknown.
+    share_of : str
+        The variance that an index is a share of: ``its variance``; "" of other indices and of
+        events.
+    unexplained : Estimate
+        Share of the variance that no single input explains, where inputs are ranked by first-order
+        indices.
+    runner_up : float
+        The largest index of the inputs ranked after the leader.
+    totals : dict of str to float
+        Input -> total index, the largest first, where an expansion of these rows gives it.
+    remedy : str
+        Way to show interactions if `totals` are unknown.
+    """
+
+    target: str
+    method: str
+    kind: str = ""
+    index_meaning: str = ""
+    contributions: tuple[Contribution, ...] = ()
+    reason: str = ""
+    rows_factor: float = float("nan")
+    is_flat: bool = False
+    rivals: tuple[str, ...] = ()
+    share_of: str = ""
+    unexplained: Estimate = NOTHING
+    runner_up: float = 0.0
+    totals: Mapping[str, float] = field(default_factory=dict)
+    remedy: str = ""
+
+    def fact(self, result: Result | None = None) -> Fact:
+        """Return the ranking with its sentence; `result` is the ranked one."""
+        notes: tuple[str, ...] = ()
+        if result is not None and result.is_nested:
+            used = grouped(len(result.first_rows))
+            notes = (f"the index rests on {used} of these rows, the first of each sample",)
+        members: dict[str, Any] = {
+            "sentence": self.sentence,
+            "target": self.target,
+            "method": self.method,
+            "index": self.kind,
+            "reason": self.reason,
+            "rows_factor": estimate_json.number(self.rows_factor),
+            "contributions": [contribution.fact for contribution in self.contributions],
+        }
+        if not isnan(self.unexplained.value):
+            members["unexplained"] = estimate_json.numbers(self.unexplained)
+            members["totals"] = dict(self.totals)
+        mentions: list[tuple[str, ...]] = [("rows_factor",)]
+        leader = self.leader
+        if leader is not None:
+            mentions = [("contributions", "0", "inputs", name) for name in leader.inputs]
+            mentions += [("unexplained",)] * bool(self.beyond_single)
+        return Fact(
+            members,
+            (partial(indices_of, self.method, self.kind),),
+            {"totals": (partial(indices_of, EXPANSION, ST.key),)},
+            mentions=tuple(mentions),
+            notes=notes,
+        )
+
+    @property
+    def leader(self) -> Contribution | None:
+        """The largest contribution, if settled."""
+        return self.contributions[0] if self.contributions and not self.reason else None
+
+    @property
+    def leads(self) -> bool:
+        """Return whether the largest contribution is large."""
+        leader = self.leader
+        if leader is None or (leader.share_of_variance and leader.value < SMALL):
+            return False
+        return self.of_event or not self.may_be_overturned
+
+    @property
+    def of_event(self) -> bool:
+        """Return whether the target is an event."""
+        return self.target.startswith("P(")
+
+    @property
+    def may_be_overturned(self) -> bool:
+        """Return whether another input may contribute more, with interactions, than the leader.
+
+        A total index is at most the index alone and all that no single input explains.
+        """
+        if self.leader is None or isnan(self.unexplained.value):
+            return False
+        if self.totals:
+            return next(iter(self.totals)) not in self.leader.sure
+        most = self.unexplained.high if self.unexplained.has_interval else self.unexplained.value
+        return most > max(self.leader.value - self.runner_up, 0.0) and most > SMALL
+
+    @property
+    def denies_a_leader(self) -> bool:
+        """Return whether, with confidence, no single input contributes much."""
+        return self.is_flat or (self.leader is not None and not self.leads)
+
+    @property
+    def sentence(self) -> str:
+        """The leading contribution, or the reason why it is unknown."""
+        if self.reason:
+            return sentence(self.reason)
+        leader = self.leader
+        if leader is None:
+            return ""
+        if leader.share_of_variance and leader.value < SMALL:
+            text = f"No single input explains much: {leader.words} {leader.size}{self._of}."
+            return " ".join(filter(None, (text, self.beyond_single)))
+        verb = "contribute" if len(leader.inputs) > 1 else "contributes"
+        if leader.doubtful:
+            verb = "may contribute"
+        alone = " alone" * self.may_be_overturned
+        text = f"{capitalized(leader.words)}{alone} {verb} most: {leader.size}{self._of}."
+        return " ".join(filter(None, (text, self.beyond_single)))
+
+    @property
+    def beyond_single(self) -> str:
+        """Share that no single input explains, if it could change the order; else ""."""
+        if not self.may_be_overturned or self.of_event:
+            return ""
+        text = f"No single input explains {whole_percent(self.unexplained)}"
+        if not self.totals:
+            return f"{text}: interactions could change the order; {self.remedy}."
+        first = [(name, total) for name, total in self.totals.items()][:2]
+        named = joined([f"{called(name)} {100 * min(total, 1.0):.0f} %" for name, total in first])
+        return f"{text}; with interactions (HDMR), the largest contributions are those of {named}."
+
+    @property
+    def _of(self) -> str:
+        return f" of {self.share_of}" if self.share_of else ""
+
+    @property
+    def with_effect(self) -> str:
+        """The leading contribution, with direction and size."""
+        effect = self.leader.effect if self.leader is not None and self.leads else ""
+        return " ".join(filter(None, (self.sentence, effect and sentence(effect))))
 
 
 def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
@@ -90,9 +247,9 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)
     # What does not exceed inputs without effect may yet contribute as much as the first.
     weighed = [
-        candidate for candidate in measured if candidate.counts or _are_tied(measured[0], candidate)
+        candidate for candidate in measured if candidate.counts or are_tied(measured[0], candidate)
     ]
-    groups = list(_groups(findings.result, weighed))
+    groups = list(groups_of(findings.result, weighed))
     if len({twin_of(member.name) for member in groups[0]}) > MOST_TIED:
         names = choices((called(member.name) for member in groups[0]), MOST_TIED + 1)
         first, second = groups[0][0], groups[0][MOST_TIED]
@@ -105,9 +262,13 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)
     least = LEAST * _scale(measured[0], kind)
     listed = [group for group in groups if group[0].index.value >= least]
-    moved = _effects(findings, method, name, [member.name for group in listed for member in group])
+    moved = effects_of(
+        findings, method, name, [member.name for group in listed for member in group]
+    )
     units = {label: unit_of_input(findings.result, label) for label in moved}
-    contributions = tuple(_contribution(group, kind, name, moved, verbs, units) for group in listed)
+    contributions = tuple(
+        contribution_of(group, kind, name, moved, verbs, units) for group in listed
+    )
     is_share = kind.unit == "variance" and split_name(name)[0] != "P"
     of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
     rivals = _rivals(measured)
@@ -164,7 +325,7 @@ def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
     first = measured[0]
     if len(measured) == 1 or not all(isfinite(candidate.half) for candidate in measured):
         return ()
-    return tuple(candidate.name for candidate in measured if _are_tied(first, candidate, AGAIN))
+    return tuple(candidate.name for candidate in measured if are_tied(first, candidate, AGAIN))
 
 
 def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
@@ -193,92 +354,35 @@ def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat
     return f"{names} {'decide that' if of_event else 'contribute'} alike: {kind.key} {most}"
 
 
-def _groups(result: Result, measured: list[Measured]) -> Iterator[list[Measured]]:
-    """Yield groups of inputs that are twins or have indistinguishable indices."""
-    laws = {
-        name: None if isinstance(law, Tied) else law.model_dump(exclude={"source"})
-        for name, law in result.study.uncertain.items()
-    }
-
-    def are_twins(candidate: Measured, other: Measured) -> bool:
-        less, more = sorted((candidate.index.value, other.index.value))
-        same = twin_of(candidate.name) == twin_of(other.name) and less >= ALIKE * more
-        return (
-            same and laws[candidate.name] is not None and laws[candidate.name] == laws[other.name]
+def ranking_of_element(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking | None:
+    """Return the ranking of the inputs of an element of an output; None if no method feeds it."""
+    method = method_for(findings.result, event=False)
+    if method is None:
+        return None
+    target = number_of(element)
+    name = (target if METHODS[method].scale_free else lightened(target)).name
+    verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
+    if element.is_angle:  # only the ranking refers to the signed value
+        verb = ("lowers its signed value", "raises its signed value")
+    try:
+        ranking = ranking_of(findings, name, method, verb)
+    except InputError as refused:
+        return Ranking(name, method, reason=f"no ranking of the inputs: {refused}")
+    if element.is_angle and ranking.index_meaning:
+        ranking = replace(
+            ranking, index_meaning=f"{ranking.index_meaning}, of the angle with its sign"
         )
-
-    left = list(measured)
-    while left:
-        first, others = left[0], left[1:]
-        tied = [other for other in others if _are_tied(first, other)]
-        group = [first, *tied]
-        group += [
-            other
-            for other in others
-            if other not in group and any(are_twins(other, member) for member in group)
-        ]
-        yield group
-        left = [candidate for candidate in left if candidate not in group]
-
-
-def _are_tied(first: Measured, other: Measured, times: float = 1.0) -> bool:
-    """Return whether another input may have as large an index, errors multiplied by `times`."""
-    return first.index.value - other.index.value <= times * first.apart(other)
-
-
-def _effects(
-    findings: Findings, method: str, name: str, inputs: Sequence[str]
-) -> dict[str, Effect]:
-    """Return the effects that have an interval; without one, no direction is clear."""
-    rows = findings.rows
-    targets: list[IndexTarget] = list(chosen(rows, method, [name]))
-    if len(targets) != 1:
-        return {}
-    columns, part = independent_inputs(rows), rows.replicates
-    by_input = effects(targets[0].values, columns, part, inputs)
-    return {name: effect for name, effect in by_input.items() if effect.slope.has_interval}
-
-
-def _contribution(
-    group: Sequence[Measured],
-    kind: IndexKind,
-    target: str,
-    moved: Mapping[str, Effect],
-    verbs: tuple[str, str],
-    units: Mapping[str, DisplayUnit],
-) -> Contribution:
-    names = tuple(member.name for member in group)
-    form = split_name(target)[0]
-    changes = tuple(
-        _change(moved[name], form, verbs, units[name]) for name in names if name in moved
+    if split_name(name)[0]:
+        return ranking
+    # Changes of the output itself are in its unit, as are indices that are not relative.
+    kind = next((kind for kind in METHODS[method].kinds if kind.key == ranking.kind), None)
+    of_index = unit if kind is not None and kind.unit == "output" else DisplayUnit()
+    contributions = tuple(
+        replace(
+            contribution,
+            changes=tuple(replace(change, unit=unit) for change in contribution.changes),
+            unit=of_index,
+        )
+        for contribution in ranking.contributions
     )
-    return Contribution(
-        names,
-        tuple(member.index for member in group),
-        kind.unit == "variance",
-        changes if len(changes) == len(names) else (),
-        doubtful=tuple(member.name for member in group if not member.counts),
-    )
-
-
-def _change(
-    effect: Effect, form: str, verbs: tuple[str, str], of_input: DisplayUnit
-) -> AverageEffect:
-    """Return the change of a target with a usual step of an input."""
-    if effect.direction == 0 or effect.of_values or form == "rank":
-        return AverageEffect(effect.direction, verbs=verbs)
-    amount = ""
-    if effect.logarithmic:
-        size = next((s for s in _STEPS if log1p(s) <= _WITHIN * effect.sd), _STEPS[-1])
-        step, by = f"{100 * size:g} %", log1p(size)
-    else:
-        step, by, amount = "one standard deviation", effect.sd, of_input.text(effect.sd)
-    value, low, high = (by * end for end in effect.slope.numbers)
-    unit = DisplayUnit()
-    if form == "log":
-        value, low, high = (100 * expm1(end) for end in (value, low, high))
-        unit = DisplayUnit("%")
-    elif form == "P":
-        value, low, high = 100 * value, 100 * low, 100 * high
-        unit = DisplayUnit("percentage points")
-    return AverageEffect(effect.direction, step, Estimate(value, low, high), unit, verbs, amount)
+    return replace(ranking, contributions=contributions)

@@ -1,18 +1,16 @@
 """Prediction interval: where the same study with another seed would most likely end."""
 
-from math import isfinite, nan, sqrt
+from math import isfinite, nan
 from typing import Any
 
-from uq.assess.answer.contributions import Ranking
+from uq.assess.answer.compared_indices import AGAIN
+from uq.assess.answer.rankings import Ranking
 from uq.assess.answer.tolerance_bound import Range, ToleranceBound
 from uq.assess.answer.wording import called, joined
 from uq.assess.fact import Fact, Functions
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.text.numbers import percent_interval
-
-AGAIN = sqrt(2)
-"""An estimate from other rows differs from this one so many times as much as the truth does."""
 
 MOST_NAMED = 3
 

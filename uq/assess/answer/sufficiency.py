@@ -6,7 +6,8 @@ from itertools import chain
 from math import inf, isfinite, isnan
 from typing import Any
 
-from uq.assess.answer.parts import Event, Quantity
+from uq.assess.answer.events import Event
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.repeat_interval import repeated_share
 from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import DisplayUnit

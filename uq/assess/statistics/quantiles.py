@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isfinite, nan
 
 from uq.assess.failed_rows import bounded
-from uq.assess.scaling import why_not_integrated
+from uq.assess.integrated_inputs import why_not_integrated
 from uq.assess.statistic import COUNT, FACT, Context, Listing, Reader, Statistic, StatisticKind
 from uq.result.element import Element
 from uq.stats import estimate_json

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.assess.row_inputs import EVERYWHERE
-from uq.assess.sampled_inputs import laws_and_values, weights_of_samples
+from uq.assess.sampled_laws import laws_and_values, weights_of_samples
 from uq.errors import InputError, choices
 from uq.render.figures.elements_plot import bins, input_axis
 from uq.render.figures.figure import INK, ROWS, styled

@@ -64,7 +64,7 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
     matplotlib.figure.Figure
     """
     result = Result.of(result)
-    result.refuse_weights("a scatter plot")
+    result.refuse_if_weighted("a scatter plot")
     rows = result.independent
     element = rows.named_elements(output)[0]
     inputs = independent_inputs(rows)
@@ -256,7 +256,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
         When there are no regimes, or fewer than two inputs.
     """
     result = Result.of(result)
-    result.refuse_weights("pairs of inputs by regime")
+    result.refuse_if_weighted("pairs of inputs by regime")
     rows = result.independent
     regimes = occurring_regimes(rows)
     inputs = independent_inputs(rows)

@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.assess.answer.answer import answer
-from uq.assess.answer.parts import Event
+from uq.assess.answer.events import Event
 from uq.assess.answer.wording import called
 from uq.assess.summary import REGIME, category_shares
 from uq.errors import InputError

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.assess.row_inputs import independent_inputs
-from uq.assess.sampled_inputs import laws_and_values
+from uq.assess.sampled_laws import laws_and_values
 from uq.assess.sensitivities import TargetIndices, methods
 from uq.assess.targets import split_name
 from uq.errors import InputError

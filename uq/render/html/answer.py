@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup
 
+from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution, whole_percent
-from uq.assess.answer.parts import Quantity
-from uq.assess.answer.remedies import Advice
-from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.piece_of_advice import Advice
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.wording import called, sentence, share_text
 from uq.errors import choices
 from uq.render.html import cells

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.assess.answer.parts import Quantity
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.wording import called
 from uq.assess.findings import Findings
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.row_inputs import independent_inputs
-from uq.assess.scaling import population
 from uq.assess.summary import REGIME
 from uq.contract import Floats
 from uq.render.figures.elements_plot import occurring_regimes
@@ -116,7 +116,7 @@ def rows_inside(
     inputs = independent_inputs(whole)
     numbers = len(inputs) + sum(1 for _ in whole.elements(outputs))
     rows = part_of(whole, numbers + ceil(len(inputs) * STOPS / _BYTES_OF_NUMBER))
-    elements = list(population(rows, outputs))
+    elements = list(elements_with_laws(rows, outputs))
     columns = [input_column(rows, name, findings.result.input_unit(name)) for name in inputs]
     columns += [output_column(rows, element, analysis) for element in elements]
     promises = {lead.name: lead.promise for lead in answered[:1] if lead.promise is not None}

@@ -6,7 +6,7 @@ from math import floor, log10
 import numpy as np
 
 from uq.assess.answer.wording import DisplayUnit, mark, unit_of_input
-from uq.assess.sampled_inputs import PROBABILITIES, compare, laws_and_values, weights_of_samples
+from uq.assess.sampled_laws import PROBABILITIES, compare, laws_and_values, weights_of_samples
 from uq.contract import Floats
 from uq.render.figures.words import meaning_of, symbol_of, unbroken
 from uq.render.html.cells import Cell, HtmlTable, without_empty_columns

@@ -4,7 +4,8 @@ from collections.abc import Collection, Iterable
 
 from markupsafe import Markup
 
-from uq.assess.answer.remedies import Advice, TighterTolerance
+from uq.assess.answer.piece_of_advice import Advice
+from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import called_together
 from uq.assess.fact import Fact
 from uq.text.keys import key_of

@@ -8,7 +8,7 @@ from uq.assess.answer.wording import NumberTarget, called
 from uq.assess.findings import Findings
 from uq.assess.fleet import Fleet
 from uq.assess.fleet_numbers import Banded
-from uq.assess.variance_by_level import SOURCES
+from uq.assess.nested_table import SOURCES
 from uq.indices.index import S1
 from uq.render.html.cells import Cell, HtmlTable, estimate_cell
 from uq.render.html.indices import index_cell

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isnan
 from typing import Any
 
-from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.answer_sentences import Answer
 from uq.assess.findings import Findings
 from uq.assess.regimes import in_words
 from uq.assess.statistic import Listing, Reader, Statistic

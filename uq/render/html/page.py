@@ -13,7 +13,7 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from uq.assess.answer.answer import conclude
-from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.answer_sentences import Answer
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.errors import InputError

@@ -11,8 +11,8 @@ import numpy as np
 
 from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import called, unit_of_input
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.row_inputs import Inputs, inputs_of
-from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic
 from uq.assess.statistics.quantiles import quantiles, thresholds
 from uq.assess.what_if import weighting_of
@@ -65,7 +65,7 @@ def tolerances(
     without = {name: why for name in inputs.laws if (why := _why_without(name, inputs))}
     context = Context(rows, _analysis(rows, elements, promises))
     outputs = rows.shown_outputs(context.analysis)
-    studied = _statistics(population(rows, outputs), context, promises)
+    studied = _statistics(elements_with_laws(rows, outputs), context, promises)
     count, parts_name = _independent(rows)
 
     def estimates(law_name: str, arguments: Arguments) -> dict[str, Any] | None:

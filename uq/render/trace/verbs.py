@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uq.assess.answer.answer import conclude, regimes_of, without_advice
+from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.quantities import quantities
-from uq.assess.answer.study_answer import Answer
 from uq.assess.chosen_targets import chosen, output_in
+from uq.assess.components_by_level import by_level
 from uq.assess.convergence import (
     convergence_facts,
     converging,
@@ -22,17 +23,15 @@ from uq.assess.design_sample import sample_of
 from uq.assess.fact import Fact
 from uq.assess.findings import Findings
 from uq.assess.fleet import fleet_facts, fleet_of, the_life
-from uq.assess.level_shares import by_level
 from uq.assess.regimes import BOUNDARY, boundary, boundary_facts
-from uq.assess.sampled_inputs import inputs_facts
+from uq.assess.sampled_laws import inputs_facts
 from uq.assess.sensitivities import sensitivities
 from uq.assess.sensitivity_table import sensitivity_facts
 from uq.assess.summary import summarise
 from uq.assess.summary_facts import levels_facts, summary_facts
 from uq.assess.targets import split_name
 from uq.assess.two_fidelities import twin_facts, with_twin
-from uq.assess.what_if import answer as answer_what_if
-from uq.assess.what_if import read_changes, what_if_facts
+from uq.assess.what_if import read_changes, reweighted_summary, what_if_facts
 from uq.errors import InputError
 from uq.learning.answer import learnt, learnt_facts
 from uq.learning.remaining_life import read_times
@@ -158,7 +157,7 @@ def _twin(result: Result, options: Options, path: Path) -> Fact:
 
 def _what_if(result: Result, options: Options, path: Path) -> Fact:
     changes = read_changes([f"{name}={value}" for name, value in options.items()])
-    return what_if_facts(answer_what_if(result, changes))
+    return what_if_facts(reweighted_summary(result, changes))
 
 
 def states_of_element(rows: Result, facts: Fact, path: Path) -> dict[str, int]:

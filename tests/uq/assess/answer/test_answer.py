@@ -17,8 +17,8 @@ from computed import (
 
 import uq
 from uq.assess.answer.answer import answer
-from uq.assess.answer.contributions import Ranking
-from uq.assess.answer.parts import Event
+from uq.assess.answer.events import Event
+from uq.assess.answer.rankings import Ranking
 from uq.contract import Status
 from uq.stats.estimate import Estimate
 from uq.text.numbers import printed

@@ -17,8 +17,8 @@ from computed import (
 
 import uq
 from uq.assess.answer.answer import answer
-from uq.assess.answer.remedies import TighterTolerance
-from uq.assess.answer.tighter_tolerances import halved
+from uq.assess.answer.tightening import halved
+from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.stats.estimate import Estimate
 from uq.study.reading import read_study_text
 

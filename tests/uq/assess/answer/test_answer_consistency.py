@@ -13,8 +13,8 @@ from computed import asking, computed, kinds, linear, study_of, with_output
 from nested_studies import nested_result
 
 from uq.assess.answer.answer import answer
-from uq.assess.answer.contributions import Ranking
-from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.answer_sentences import Answer
+from uq.assess.answer.rankings import Ranking
 from uq.assess.fact import Fact
 
 MOVED = 1.9

@@ -8,8 +8,9 @@ from computed import UNIFORM, asking, computed, linear, study_of, with_output
 
 import uq
 from uq.assess.answer.answer import answer
-from uq.assess.answer.contributions import Contribution, Ranking
-from uq.assess.answer.levels import intermingled
+from uq.assess.answer.contributions import Contribution
+from uq.assess.answer.leading_level import intermingled
+from uq.assess.answer.rankings import Ranking
 from uq.render.html.answer import fragment
 from uq.stats.estimate import Estimate
 

@@ -6,7 +6,8 @@ from answered import lifetime, numbers
 from computed import asking, kinds, linear, with_output
 
 from uq.assess.answer.answer import answer
-from uq.assess.answer.contributions import Contribution, Ranking
+from uq.assess.answer.contributions import Contribution
+from uq.assess.answer.rankings import Ranking
 from uq.assess.answer.repeat_interval import found_again, repeated_quantile
 from uq.assess.answer.tolerance_bound import ToleranceBound
 from uq.assess.answer.wording import DisplayUnit

@@ -20,9 +20,9 @@ from nested_studies import nested_result
 from scipy.stats import binomtest
 
 from uq.assess.answer.answer import answer, verdict
-from uq.assess.answer.parts import Event
-from uq.assess.answer.remedies import TighterTolerance
-from uq.assess.answer.study_answer import Answer
+from uq.assess.answer.answer_sentences import Answer
+from uq.assess.answer.events import Event
+from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.findings import Findings
 from uq.cli.summary_tables import show_answer
 from uq.contract import Status

@@ -8,8 +8,8 @@ import pytest
 from computed import asking, computed, linear, study_of, with_output
 
 from uq.assess.answer.answer import answer
-from uq.assess.answer.remedies import TighterTolerance
 from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import DisplayUnit
 from uq.stats.estimate import Estimate
 

@@ -14,7 +14,7 @@ import uq as api
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
 from uq.assess.population import Population
-from uq.assess.what_if import answer, read_changes, what_if_facts
+from uq.assess.what_if import read_changes, reweighted_summary, what_if_facts
 from uq.contract import Status
 from uq.errors import RunError
 from uq.render.html.embedded_columns import IMPOSSIBLE, log_bytes
@@ -76,7 +76,7 @@ def asked_of_python(browser, ds):
     words = shlex.split(command)
     assert words[:3] == ["uq", "what-if", "a result.nc"]
     changes = read_changes([word for word in words[3:] if word != "--set"])
-    return changes, answer(Result(ds), changes)
+    return changes, reweighted_summary(Result(ds), changes)
 
 
 def status(browser):

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import isfinite
 
 from uq.assess.answer.answer import conclude, verdict
-from uq.assess.answer.parts import Quantity
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.tolerance_bound import Range
 from uq.assess.findings import Findings
 from uq.assess.statistic import Reader

@@ -1,4 +1,4 @@
-"""Inputs of a result that only scale a life, and the laws of its lives given all others."""
+"""Choose the inputs to integrate exactly, which only scale lives, and add their laws to lives."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -202,7 +202,9 @@ def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
     return dict(zip([names[i] for i in rest], slope.tolist(), strict=True)), deviation
 
 
-def population(rows: Result, outputs: Sequence[str], *, plain: bool = False) -> Iterator[Element]:
+def elements_with_laws(
+    rows: Result, outputs: Sequence[str], *, plain: bool = False
+) -> Iterator[Element]:
     """Yield the elements of outputs, with the laws of their lives where inputs are integrated.
 
     Parameters

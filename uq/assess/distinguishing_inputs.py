@@ -1,4 +1,4 @@
-"""Distinguishing inputs of the rows that end first: their place within all rows."""
+"""Inputs and regimes that distinguish the rows that end first from all rows."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Fleets: units of one world, and how many of them have ended.
+"""Units of one world: P(a unit has ended), and the time of the k-th end of a fleet.
 
 A world is a sample of a study: its units have the same shared inputs, and are independent given
 these. What scales the lives of units alone is integrated inside each unit; what scales those of all
@@ -12,11 +12,16 @@ from math import ceil, nan
 
 import numpy as np
 
+from uq.assess.integrated_inputs import (
+    integrated,
+    not_integrated,
+    why_not_integrated,
+    without_effect,
+)
 from uq.assess.population import as_sample
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.sample import Sample
 from uq.assess.scale_laws import Scale
-from uq.assess.scaling import integrated, not_integrated, why_not_integrated, without_effect
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.result.nesting import Nesting

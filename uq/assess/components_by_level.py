@@ -1,4 +1,4 @@
-"""Shares of the variance: shared by the units of a sample, own to a unit, due to chance."""
+"""Variance components of outputs: shared by units, own to each unit, due to chance."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
@@ -10,10 +10,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.assess.chosen_targets import FEWEST_HITS, few_hits, targets_of
-from uq.assess.scaling import Scales, scales_by_level
+from uq.assess.integrated_inputs import Scales, scales_by_level
+from uq.assess.nested_table import SOLVER, SOURCES, LevelShares, shares_of
 from uq.assess.statistics.counts import stated_error
 from uq.assess.targets import IndexTarget, lightened, split_name
-from uq.assess.variance_by_level import SOLVER, SOURCES, LevelShares, shares_of
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.indices.index import RefusedError

@@ -1,4 +1,4 @@
-"""Promised bounds of an output, and the effect of the numerical error of rows on them."""
+"""Choose the bound to promise, or quantiles in its place, and move it by the rows' errors."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -10,8 +10,8 @@ import numpy as np
 from uq.assess.answer.tolerance_bound import ToleranceBound, piles
 from uq.assess.answer.wording import DisplayUnit, joined, sentence
 from uq.assess.fact import Fact, Functions
+from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.joint_bounds import SIDES
-from uq.assess.scaling import population
 from uq.assess.statistic import Context, Statistic
 from uq.assess.statistics.counts import (
     accuracy,
@@ -336,7 +336,7 @@ def _bounds(
         return bounds["lower"], bounds["upper"]
     alike = (
         candidate
-        for candidate in population(context.rows, [element.output])
+        for candidate in elements_with_laws(context.rows, [element.output])
         if candidate.name == element.name
     )
     drawn = replace(next(alike), values=element.values)  # with the law of its scaling inputs

@@ -1,16 +1,17 @@
-"""Tighter tolerances: effects of halving the scatter of inputs, by importance weights."""
+"""Effects of halving the scatter of inputs, by importance weights, and the advised tolerance."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import hypot, isfinite, sqrt
 
 from uq.assess.answer.contributions import Contribution
-from uq.assess.answer.parts import Quantity
-from uq.assess.answer.remedies import SHARE_OF, Advice, TighterTolerance
+from uq.assess.answer.piece_of_advice import Advice
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.tolerance_effects import SHARE_OF, TighterTolerance
 from uq.assess.answer.wording import CHOSEN, DisplayUnit, called, mark_of, twin_of, unit_of_input
 from uq.assess.targets import split_name
-from uq.assess.what_if import answer as weighted
+from uq.assess.what_if import reweighted_summary
 from uq.errors import InputError, RunError
 from uq.result.result import Result
 from uq.sampling.law import Law
@@ -114,7 +115,7 @@ def tightened(
     }
     try:
         keys = [key for key, *_ in promised_numbers]
-        answer = weighted(result, changes, _asked(result, quantity, keys), _PARTS)
+        answer = reweighted_summary(result, changes, _asked(result, quantity, keys), _PARTS)
     except (InputError, RunError) as refusal:
         yield replace(unanswered, reason=f"{_UNKNOWN} ({refusal})")
         return

@@ -1,4 +1,4 @@
-"""Index of each input, and its separation from the others."""
+"""Index of each input, with the half-width of its difference from another."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -22,6 +22,10 @@ from uq.stats.intervals import scatter_interval
 _PARTS = 8
 _FEWEST_PARTS = 4
 _DOUBTFUL = 2.0  # times the error of an index that is too uncertain for an interval
+
+
+AGAIN = sqrt(2)
+"""An estimate from other rows differs from this one so many times as much as the truth does."""
 
 
 @dataclass(frozen=True)
@@ -148,3 +152,8 @@ def _parts(result: Result, method: str, name: str) -> dict[str, dict[str, list[f
             for label, index in values.items():
                 estimates.setdefault(kind.key, {}).setdefault(label, []).append(index.value)
     return estimates
+
+
+def are_tied(first: Measured, other: Measured, times: float = 1.0) -> bool:
+    """Return whether another input may have as large an index, errors multiplied by `times`."""
+    return first.index.value - other.index.value <= times * first.apart(other)

@@ -1,23 +1,37 @@
-"""Events and quantities of an answer, with their sentences."""
+"""Probabilities of the events that a study asks about, with their drivers and sentences."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from math import isnan
 from typing import Any
 
-from uq.assess.answer.contributions import Ranking
-from uq.assess.answer.earliest import Earliest
+from uq.assess.answer.bound_choice import (
+    end_verb,
+)
+from uq.assess.answer.compared_indices import method_for
 from uq.assess.answer.limits import CURVE_FUNCTIONS, Limit, limit_of
-from uq.assess.answer.repeat_interval import repeated_quantile, repeated_share
-from uq.assess.answer.tolerance_bound import Range, ToleranceBound
-from uq.assess.answer.wording import DisplayUnit, called_together, sentence, share_text
-from uq.assess.effects import EventCurve
+from uq.assess.answer.rankings import Ranking, ranking_of
+from uq.assess.answer.wording import (
+    DisplayUnit,
+    called_together,
+    sentence,
+    share_text,
+    unit_of_input,
+)
+from uq.assess.chosen_targets import chosen
+from uq.assess.effects import EventCurve, event_curve
 from uq.assess.fact import Fact, Functions
+from uq.assess.findings import Findings
+from uq.assess.row_inputs import independent_inputs
 from uq.assess.statistic import Statistic
+from uq.assess.summary import Described
+from uq.assess.targets import split_name
+from uq.errors import InputError
+from uq.result.elements import Element
 from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
-from uq.text.numbers import capitalized, percent, percent_range
+from uq.text.numbers import capitalized, percent, percent_range, threshold
 
 MINOR = 0.25
 """Below this share, state that the leading input explains little alone."""
@@ -175,152 +189,59 @@ def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
         yield {"above": low, "below": high} | estimate_json.numbers(share)
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """The answer for one element of an output.
+def events_of(findings: Findings, described: Described, element: Element) -> Iterator[Event]:
+    """Yield the events at the thresholds of an element."""
+    side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
+    for statistic in described.parts["thresholds"]:
+        if statistic.key[-1] != side or statistic.at is None:
+            continue
+        at = threshold(statistic.at, element.units)
+        predicate = f"exceed {at}"
+        if element.is_lifetime:  # an end at the threshold itself does not count
+            ended = element.values[~element.censored]
+            at_it = element.law is None and (ended == statistic.at).any()
+            predicate = f"{end_verb(element)} {'before' if at_it else 'within'} {at}"
+        predicate += " in magnitude" * element.is_angle
+        target = f"P({element.name}{sign}{statistic.at!r})"
+        undefined = statistic.facts.get("undefined") or 0.0
+        yield replace(event(findings, target, predicate, statistic), undefined=undefined)
 
-    Attributes
+
+def event(findings: Findings, target: str, predicate: str, statistic: Statistic) -> Event:
+    """Return an event: its probability, ranking, and probability over the leading input.
+
+    Parameters
     ----------
-    name, words, meaning : str
-        Of the element; in words, with and without its place within the output.
-    promise : ToleranceBound or None
-    range : Range or None
-    events : tuple of Event
-    ranking : Ranking or None
-    wanted : {"above", "below", ""}
-        The side of its values that is wanted; "" where that is not known, and for lives.
-    earliest : Earliest or None
-        Of a life that does not end with a success: which rows end first, and why.
-    scaled_by : tuple of str
-        Quantities whose values are assumed and to which all its lives are proportional.
-    own_error : Fact or None
-        Effect of the stated errors of the rows on the promise.
-    b_lives : tuple of Statistic
-        Of a life.
+    findings : Findings
+    target : str
+        Its name as a target of indices.
+    predicate : str
+        The event, in words.
+    statistic : Statistic
+        Its probability.
     """
+    best = statistic.best
+    outcome = Event(target, predicate, best.estimate, statistic.failed, by=best.by)
+    method = method_for(findings.result, event=True)
+    if method is None or best.estimate.value in (0.0, 1.0):
+        return outcome
+    verb = ("lowers the probability", "raises the probability")
+    try:
+        ranking = ranking_of(findings, target, method, verb)
+    except InputError as refused:
+        why = str(refused)
+        if not split_name(target)[2]:  # a regime that does not occur in the ranked rows
+            why = f"no ranking of the inputs: no row that it could rest on is {predicate}"
+        return replace(outcome, ranking=Ranking(target, method, reason=why))
+    outcome = replace(outcome, ranking=ranking)
+    if ranking.leader is None:
+        return outcome
+    over, rows = ranking.leader.inputs[0], findings.ranked.rows
+    curve = curve_over(rows, target, method, over)
+    return replace(outcome, over=over, curve=curve, over_unit=unit_of_input(findings.result, over))
 
-    name: str
-    words: str
-    meaning: str
-    promise: ToleranceBound | None = None
-    range: Range | None = None
-    events: tuple[Event, ...] = ()
-    ranking: Ranking | None = None
-    wanted: str = ""
-    earliest: Earliest | None = None
-    scaled_by: tuple[str, ...] = ()
-    own_error: Fact | None = None
-    b_lives: tuple[Statistic, ...] = ()
 
-    def fact(self, result: Result | None = None) -> Fact:
-        """Return everything about the quantity."""
-        rows = None if result is None else result.independent
-        parts = {
-            "promise": self.promise and self.promise.fact,
-            "range": self.range and self.range.fact,
-            "own_error": self.own_error,
-        }
-        of_rows = {name: replace(part, rows=rows) for name, part in parts.items() if part}
-        events = Fact({event.name: event.fact(result) for event in self.events})
-        members = {"words": self.words} | of_rows | {"events": events}
-        if self.earliest is not None:
-            members["earliest"] = self.earliest.fact
-        if (repeated := self.repeated).sentence:
-            members["another_seed"] = replace(repeated, rows=rows)
-        if self.ranking is not None:
-            members["ranking"] = self.ranking.fact(result)
-        lives = {
-            life.key[-1]: Fact(estimate_json.whole(life.estimate), life.by) for life in self.b_lives
-        }
-        more = {"b_lives": Fact(lives, rows=rows), "scaled_by": list(self.scaled_by)}
-        return Fact(members, more=more)
-
-    @property
-    def subject(self) -> str:
-        """Its name, and the assumed quantities that scale it."""
-        if not self.scaled_by:
-            return sentence(self.words)
-        are = "are" if len(self.scaled_by) > 1 else "is"
-        named = called_together(self.scaled_by)
-        return f"{sentence(self.words)} Its scale is that of {named}, which {are} assumed."
-
-    @property
-    def is_life(self) -> bool:
-        """Return whether the quantity is a life."""
-        return self.promise is not None and self.promise.is_life
-
-    @property
-    def is_success(self) -> bool:
-        """Return whether the quantity is a life that ends with a success."""
-        return self.promise is not None and self.promise.ends == "succeed"
-
-    @property
-    def wants_more(self) -> bool | None:
-        """Return whether more of its events are better; None if unknown.
-
-        Of successes; of lives that end, fewer; of values above a threshold, as the study states.
-        """
-        if self.is_life:
-            return self.is_success
-        return self.wanted == "above" if self.wanted else None
-
-    def with_limits(self) -> "Quantity":
-        """Return the quantity with limits of the leading inputs of its events."""
-        if (more := self.wants_more) is None:
-            return self
-        return replace(self, events=tuple(event.with_limit(more) for event in self.events))
-
-    @property
-    def ranking_sentence(self) -> str:
-        """The leading contribution; "" if there is no ranking and an event states the reason."""
-        causes = [event.decided_by for event in self.events]
-        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in causes):
-            return ""
-        return self.ranking.with_effect
-
-    @property
-    def output(self) -> str:
-        """The output that it is an element of."""
-        return self.name.partition("[")[0]
-
-    @property
-    def place(self) -> str:
-        """Its place among the elements of the output."""
-        return self.words.removeprefix(self.meaning).removeprefix(", ")
-
-    @property
-    def first(self) -> Event | None:
-        """The event that comes first, if nothing can be promised."""
-        if self.promise is not None and self.promise.sentence:
-            return None
-        return next((event for event in self.events if event.sentence), None)
-
-    @property
-    def repeated(self) -> Fact:
-        """Prediction interval for another seed."""
-        if self.first is None:
-            return repeated_quantile(self.promise, self.range, self.ranking)
-        first = self.first
-        return repeated_share(first.predicate, first.share, self.ranking, first.by)
-
-    @property
-    def others(self) -> list[Event]:
-        """The events after the first."""
-        return [event for event in self.events if event is not self.first]
-
-    @property
-    def head(self) -> list[str]:
-        """Sentences on promise, subject, error and likely range, as far as known."""
-        sentences = [] if self.promise is None else [self.promise.sentence]
-        if self.first is not None:
-            sentences += [self.first.sentence, self.first.decided_by, self.first.limited]
-        sentences.append(self.subject)
-        sentences += [] if self.promise is None else [self.promise.basis]
-        sentences += [] if self.own_error is None else [self.own_error.sentence]
-        sentences += [] if self.range is None else [self.range.sentence]
-        return [*filter(None, sentences)]
-
-    @property
-    def lines(self) -> list[str]:
-        """The sentences of `head`, then each other event with its main driver."""
-        return [*self.head, *(event.with_cause for event in self.others)]
+def curve_over(rows: Result, target: str, method: str, over: str) -> EventCurve | None:
+    """Return the probability of an event over an input."""
+    hits = next(chosen(rows, method, [target])).values
+    return event_curve(hits, independent_inputs(rows)[over], rows.replicates)

@@ -1,4 +1,4 @@
-"""One table of numbers apportioned to levels: shared by units, own to each, due to chance."""
+"""Shares of levels in the variance of one number, in a table of samples, units and repeats."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace

@@ -7,7 +7,7 @@ from input_studies import BELL, UNIFORM, tables
 from scipy import stats
 
 from uq import plots
-from uq.assess.sampled_inputs import compare
+from uq.assess.sampled_laws import compare
 from uq.errors import InputError
 from uq.sampling.laws import law_of
 

@@ -1,17 +1,15 @@
-"""Remedies: effects of a tighter tolerance, and each piece of advice."""
+"""Effect of a tighter tolerance on one statistic, before and after, with its sentence."""
 
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import Any
 
-from uq.assess.answer.sufficiency import unsettled
 from uq.assess.answer.tolerance_bound import ToleranceBound
-from uq.assess.answer.wording import DisplayUnit, called_together, joined
+from uq.assess.answer.wording import DisplayUnit, called_together
 from uq.assess.fact import Fact
 from uq.assess.what_if import what_if
 from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
-from uq.text.numbers import capitalized, percent, percent_interval
+from uq.text.numbers import percent, percent_interval
 
 SHARE_OF = "the share of rows that "
 """Opening of the name of a statistic that is the probability of an event."""
@@ -171,79 +169,3 @@ class TighterTolerance:
             return self.text(self.after)
         bare = self.unit.bare_between(self.after.low, self.after.high)
         return f"{self.text(self.after)} ({self.interval if self.is_share else bare})"
-
-
-@dataclass(frozen=True)
-class Advice:
-    """One piece of advice.
-
-    Attributes
-    ----------
-    rule : str
-        ``failed``, ``finer``, ``unknown``, ``chance``, ``measure``, ``known``, ``tighten``,
-        ``keep``, ``rows`` or ``nothing``.
-    sentence : str
-        The advice, without alternatives of about the same effect.
-    inputs : tuple of str
-    rows : int or None
-        Recommended total number, if more rows help.
-    tightened : TighterTolerance or None
-    key : str
-        Of its number, for ``uq trace``; "" if it has none.
-    alike : tuple of TighterTolerance
-        Other tolerances of about the same effect.
-    tolerances : tuple of TighterTolerance
-        All that were compared: of each tolerance, every number that it would change.
-    """
-
-    rule: str
-    sentence: str
-    inputs: tuple[str, ...] = ()
-    rows: int | None = None
-    tightened: TighterTolerance | None = None
-    key: str = ""
-    alike: tuple[TighterTolerance, ...] = ()
-    tolerances: tuple[TighterTolerance, ...] = ()
-
-    @property
-    def fact(self) -> Fact:
-        """The advice with its numbers."""
-        members: dict[str, Any] = {"text": self.text, "inputs": list(self.inputs)}
-        if self.rows is not None:
-            members["rows"] = self.rows
-        if self.tolerances:
-            members["tolerances"] = [tolerance.fact for tolerance in self.tolerances]
-        mentions = (("rows",),) if self.rows is not None else ()
-        return Fact(members, (unsettled,), mentions=mentions)
-
-    @property
-    def also(self) -> str:
-        """Sentence on other tolerances of about the same effect; "" for none."""
-        named = [
-            f"{called_together(tolerance.inputs)} ({tolerance.after_in_words})"
-            for tolerance in self.alike
-        ]
-        return f"{capitalized(joined(named, 'or'))} would help about as much." if named else ""
-
-    @property
-    def effects(self) -> list[TighterTolerance]:
-        """Effects of the advised tolerance on all statistics."""
-        advised_inputs = None if self.tightened is None else self.tightened.inputs
-        return [tolerance for tolerance in self.tolerances if tolerance.inputs == advised_inputs]
-
-    @property
-    def sure(self) -> TighterTolerance | None:
-        """The first effect with a new promise."""
-        return next((tolerance for tolerance in self.effects if tolerance.promised), None)
-
-    @property
-    def harmed(self) -> list[TighterTolerance]:
-        """Effects of the advised tolerance for the worse."""
-        return [tolerance for tolerance in self.effects if tolerance.harms]
-
-    @property
-    def text(self) -> str:
-        """All sentences of the advice."""
-        sure = "" if self.sure is None else self.sure.promised
-        worse = [tolerance.besides for tolerance in self.harmed]
-        return " ".join(filter(None, (self.sentence, sure, *worse, self.also)))

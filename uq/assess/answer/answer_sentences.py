@@ -1,13 +1,14 @@
-"""The answer of a study: its parts in reading order, in sentences and as a tree of facts."""
+"""The answer in sentences and as a tree of facts, its parts in reading order."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from uq.assess.answer.levels import VarianceComponents
-from uq.assess.answer.parts import Event, Quantity
-from uq.assess.answer.remedies import Advice
+from uq.assess.answer.events import Event
+from uq.assess.answer.leading_level import VarianceComponents
+from uq.assess.answer.piece_of_advice import Advice
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.sufficiency import Enough
 from uq.assess.answer.wording import share_text
 from uq.assess.fact import Fact

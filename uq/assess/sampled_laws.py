@@ -1,4 +1,4 @@
-"""The laws and rank correlations of the inputs, as stated and as the rows have them."""
+"""Stated laws and rank correlations of the inputs compared with those of the rows."""
 
 from typing import NamedTuple
 

@@ -1,14 +1,14 @@
-"""Variance components by level, and how intermingled the regimes are."""
+"""The level with most of the variance, and how intermingled the regimes are, in sentences."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isnan
 
-from uq.assess.answer.contributions import Ranking
+from uq.assess.answer.rankings import Ranking
 from uq.assess.answer.wording import called, joined, rounded, sentence, share_text
+from uq.assess.components_by_level import switching
 from uq.assess.fact import Fact
 from uq.assess.findings import Findings
-from uq.assess.level_shares import switching
 from uq.assess.regimes import compared_rows, still_uncertain
 from uq.assess.targets import FORMS, split_name
 from uq.result.result import Result
