@@ -8,11 +8,13 @@ import generated
 import numpy as np
 import pytest
 import scipy
-from computed import kinds
+from computed import kinds, linear
 
 from uq import open_result, plots, sensitivity, summary
-from uq.assess.statistic import Statistic
+from uq.assess.statistic import Statistic, placed
 from uq.assess.statistics.table import STATISTICS
+from uq.assess.summary import summarise
+from uq.assess.summary_facts import summary_facts
 from uq.indices.index import IndexKind, Indices
 from uq.indices.method import SensitivityMethod
 from uq.indices.methods import METHODS
@@ -165,6 +167,7 @@ def test_a_study_of_both_is_run_and_shown(
 # A statistic
 
 
+@placed(absent="null")
 def _geometric_mean(element, context):
     """Yield exp(mean(log)) of an output whose values are all positive.
 
@@ -209,6 +212,24 @@ def test_a_statistic_is_one_entry_of_a_table(no_other_figures, uq, write_study, 
     assert estimator["does"] == "Yield exp(mean(log)) of an output whose values are all positive"
     assert estimator["sources"][0].startswith("D. McAlister")
     assert "| `geometric_mean` | exp(mean(log)) of an output" in generated.statistics()
+
+
+def test_a_statistic_states_what_json_has_where_it_does_not_apply(monkeypatch):
+    monkeypatch.setitem(STATISTICS, "geometric_mean", _geometric_mean)
+    negative = linear(samples=32).assign(y=lambda ds: ds["y"] - 10)
+    output = summary_facts(summarise(Result(negative))).json["outputs"]["y"]
+    assert output["geometric_mean"] is None
+    assert [*output][:3] == ["units", "mean", "mean_interval"]
+    assert [*output][-1] == "geometric_mean"
+
+
+def test_the_digits_of_a_new_statistic_show_a_small_scatter(monkeypatch):
+    monkeypatch.setitem(STATISTICS, "geometric_mean", _geometric_mean)
+    narrow = linear(samples=32).assign(y=lambda ds: 1000 + 1e-5 * ds["y"])
+    described = summarise(Result(narrow)).outputs["y"]
+    mean, geometric = described.find("mean"), described.find("geometric_mean")
+    assert mean is not None and geometric is not None
+    assert mean.words() == geometric.words() != "1000"
 
 
 # A law

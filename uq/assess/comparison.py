@@ -20,6 +20,7 @@ from uq.result.result import AnyResult, Result
 from uq.stats import two_samples
 from uq.stats.estimate import NOTHING, Estimate
 from uq.study.file import AnalysisTable
+from uq.text.units import ReadableUnit, typical, unit_of
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,12 @@ class ComparedOutput:
     def units(self) -> str:
         """CF unit string."""
         return self.declared.unit
+
+    @property
+    def readable_unit(self) -> ReadableUnit:
+        """The unit in which its values are shown, from the size of its first quantiles."""
+        quantiles = self.parts.get("quantiles", ())
+        return unit_of(self.units, typical(pair.first.estimate.value for pair in quantiles))
 
     @property
     def statistics(self) -> tuple[ComparedStatistic, ...]:

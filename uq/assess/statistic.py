@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import Flag, auto
 from functools import cached_property
-from math import isfinite, isinf, isnan
-from typing import Any
+from math import inf, isfinite, isinf, isnan
+from typing import Any, NamedTuple
 
 from uq.assess.fact import Functions
 from uq.assess.joint_bounds import JointBound, joint_bounds
@@ -215,6 +215,11 @@ class Statistic:
         """Return whether this reader shows it."""
         return reader in self.kind.readers
 
+    def is_value_in(self, unit: str) -> bool:
+        """Return whether it is a value of an output in this unit, not a share, count or shape."""
+        of_output = self.kind.form in ("estimate", "moment", "bound") and not self.kind.is_share
+        return of_output and self.unit == unit
+
     @property
     def best(self) -> "Statistic":
         """Itself, or the estimate under an assumption where there is none without."""
@@ -244,3 +249,37 @@ class Statistic:
 
 Maker = Callable[[Element, Context], Iterable[Statistic]]
 """Yields some statistics of an element."""
+
+
+class Place(NamedTuple):
+    """Place of the statistics of a maker in JSON and pandas; by default last, as in the table.
+
+    Attributes
+    ----------
+    json, columns : float
+        Rank of the first ones in the promised order.
+    absent : {"", "null", "{}"}
+        JSON where they do not apply to an output; "" leaves them out.
+    """
+
+    json: float = inf
+    columns: float = inf
+    absent: str = ""
+
+
+_PLACES: dict[Maker, Place] = {}
+
+
+def placed(json: float = inf, columns: float = inf, absent: str = "") -> Callable[[Maker], Maker]:
+    """Give a maker its place in JSON and pandas; the outermost decorator."""
+
+    def place(make: Maker) -> Maker:
+        _PLACES[make] = Place(json, columns, absent)
+        return make
+
+    return place
+
+
+def place_of(make: Maker) -> Place:
+    """Return the place of the statistics of a maker."""
+    return _PLACES.get(make, Place())

@@ -25,6 +25,7 @@ from uq.stats.importance_weights import Smoothed
 from uq.stats.intervals import replicates_of_some, share_interval
 from uq.stats.weighted_means import weighted_share
 from uq.study.file import AnalysisTable
+from uq.text.units import ReadableUnit, typical, unit_of
 
 NO_INTERVALS = (
     "no intervals: the rows of a '{design}' design are not independent, and a single replicate"
@@ -47,7 +48,6 @@ SOME_FAILED = (
 
 SHARE = StatisticKind(form="share")
 
-_OF_VALUES = {"moments", "quantiles", "b_lives", "tolerance", "joint_bounds"}
 _DIGITS = 5  # of numbers in tables
 _FEWEST_STEPS = 10  # of the last digit, within the range of the values
 
@@ -79,6 +79,12 @@ class Described:
     def statistics(self) -> tuple[Statistic, ...]:
         """All of them in order."""
         return tuple(chain.from_iterable(self.parts.values()))
+
+    @property
+    def readable_unit(self) -> ReadableUnit:
+        """The unit in which its values are shown, from the size of its quantiles."""
+        quantiles = self.parts.get("quantiles", ())
+        return unit_of(self.units, typical(statistic.estimate.value for statistic in quantiles))
 
     def find(self, *key: str) -> Statistic | None:
         """Return the statistic with this key."""
@@ -222,8 +228,13 @@ def _described(
         for name in wanted
     }
     if step := resolution_of(element, _FEWEST_STEPS * 10.0**-_DIGITS):
-        for name in _OF_VALUES & parts.keys():
-            parts[name] = tuple(replace(statistic, resolution=step) for statistic in parts[name])
+        for name, statistics in parts.items():
+            parts[name] = tuple(
+                replace(statistic, resolution=step)
+                if statistic.is_value_in(element.units)
+                else statistic
+                for statistic in statistics
+            )
     independent = context.sample(element).is_simple_random
     fitted = fits_of(element, independent) if fits and element.is_lifetime else {}
     return Described(element.units, parts, fitted)

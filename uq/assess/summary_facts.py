@@ -11,8 +11,8 @@ from uq.assess.fact import Fact, Functions
 from uq.assess.input_changes import InputMoments, OnlyChange
 from uq.assess.life_fit import Fit, fits_of
 from uq.assess.nested_table import LevelShares
-from uq.assess.statistic import Reader, Statistic
-from uq.assess.statistics.table import EMPTY, JSON_ORDER, STATISTICS
+from uq.assess.statistic import Reader, Statistic, place_of
+from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import REGIME, Described, Summary, status_counts
 from uq.result.elements import independent_rows
 from uq.result.nesting import nesting_of
@@ -92,11 +92,12 @@ def _described(described: Described, of_reports: bool) -> Fact:
     """Return the statistics of an element, each under its key."""
     members: dict[str, Any] = {"units": described.units}
     by: dict[str, Functions] = {}
-    for name in dict.fromkeys((*JSON_ORDER, *described.parts)):
+    for name in sorted(described.parts, key=lambda name: place_of(STATISTICS[name]).json):
         statistics = [s for s in described.parts[name] if of_reports or s.is_read_by(Reader.JSON)]
-        if name in EMPTY:
-            missing = not statistics and EMPTY[name] is None
-            members[name] = Fact(None, (STATISTICS[name],)) if missing else {}
+        if (absent := place_of(STATISTICS[name]).absent) == "null" and not statistics:
+            members[name] = Fact(None, (STATISTICS[name],))
+        elif absent:
+            members[name] = {}
         for (parent, form), same in groupby(statistics, lambda s: (s.key[:-1], s.kind.form)):
             group = list(same)
             _put(members, parent, _FORMS[form](group))
@@ -274,7 +275,7 @@ def _only(change: OnlyChange) -> dict[str, Any]:
 def _output(output: "ComparedOutput") -> dict[str, Any]:
     members: dict[str, Any] = {"units": output.units}
     for name, pairs in output.parts.items():
-        if EMPTY.get(name) == {}:
+        if place_of(STATISTICS[name]).absent == "{}":
             members[name] = {}
         for pair in pairs:
             *parent, last = pair.first.key

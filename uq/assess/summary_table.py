@@ -5,8 +5,8 @@ from typing import Any
 
 import pandas as pd
 
-from uq.assess.statistic import Reader, Statistic
-from uq.assess.statistics.table import COLUMN_ORDER
+from uq.assess.statistic import Reader, Statistic, place_of
+from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import Described, Summary, summarise
 from uq.result.result import AnyResult, Result
 from uq.stats.estimate import Estimate
@@ -51,7 +51,7 @@ def table_of(summarised: Summary) -> pd.DataFrame:
 def _line(output: Described) -> dict[str, Any]:
     """Return one line of `summary`."""
     line: dict[str, Any] = {"units": output.units}
-    for name in dict.fromkeys((*COLUMN_ORDER, *output.parts)):
+    for name in sorted(output.parts, key=lambda name: place_of(STATISTICS[name]).columns):
         for statistic in output.parts[name]:
             column = statistic.label if statistic.column is None else statistic.column
             if column and statistic.is_read_by(Reader.COLUMNS):

@@ -10,7 +10,7 @@ from uq.cli.printing import cells, grid, heading, note, paragraph, print_json
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, interval_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, in_unit, number, percent
-from uq.text.units import typical, unit_of
+from uq.text.units import unit_of
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -44,8 +44,7 @@ def _show(differences: Comparison, first: Path, second: Path) -> None:
         heading(f"\n{name}")
         grid([(label, *_cells(statistic)) for label, statistic in shares.items()], header=_HEADER)
     for name, output in differences.outputs.items():
-        quantiles = (statistic.first.estimate.value for statistic in output.parts["quantiles"])
-        unit = unit_of(output.units, typical(quantiles))
+        unit = output.readable_unit
         heading(f"\n{name}{in_brackets(unit)}")
         variable = compared(name, output.declared.is_angle)
         grid(_lines(output, unit.size, variable), _HEADER)

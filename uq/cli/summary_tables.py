@@ -18,7 +18,7 @@ from uq.cli.printing import CELLS, console, grid, heading, note, paragraph, titl
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, failed_bounds_text, interval_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, number, percent
-from uq.text.units import ReadableUnit, readable, typical, unit_of
+from uq.text.units import ReadableUnit, readable
 
 _LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, too
 
@@ -50,8 +50,7 @@ def show_summary(result: Result, summary: Summary, boundary: Statistic | None = 
             paragraph(f"{stated}: {in_words(boundary)}", indent=2)
     for name, output in summary.outputs.items():
         meaning = readable(result.dataset[name.partition("[")[0]].attrs["long_name"])
-        quantiles = (statistic.estimate.value for statistic in output.parts["quantiles"])
-        unit = unit_of(output.units, typical(quantiles))
+        unit = output.readable_unit
         is_angle = result.outputs[name.partition("[")[0]].is_angle
         block = Block(unit, output.units, compared(name, is_angle))
         heading(f"\n{name}{in_brackets(block.unit)}", meaning)

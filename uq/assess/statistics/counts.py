@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from uq.assess.population import as_sample
-from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind
+from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind, placed
 from uq.contract import Mask
 from uq.result.element import Element
 from uq.result.result import Result
@@ -19,6 +19,7 @@ from uq.text.numbers import counted, percent
 _EFFECTIVE = StatisticKind(form="number", text="{:.0f}", readers=COUNT.readers)
 
 
+@placed(json=5, columns=3)
 def counts(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield how many rows never end, are censored, are undefined, or failed."""
     for name in ("never", "censored", "undefined", "failed"):
@@ -44,6 +45,7 @@ def effective(element: Element, context: Context) -> Iterator[Statistic]:
         )
 
 
+@placed(columns=4)
 def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield how many rows state an error beyond the accuracy requested.
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.assess.sample import MEAN, SD
-from uq.assess.statistic import FACT, Context, Reader, Statistic, StatisticKind
+from uq.assess.statistic import FACT, Context, Reader, Statistic, StatisticKind, placed
 from uq.assess.targets import number_of
 from uq.contract import Floats
 from uq.result.element import Element
@@ -24,6 +24,7 @@ MOMENT = StatisticKind(form="moment")
 SPREAD = replace(MOMENT, readers=~Reader.RUNNING)
 
 
+@placed(json=0, columns=0)
 def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield mean, standard deviation and tail; unknown where rows never end or are censored.
 

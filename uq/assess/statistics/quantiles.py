@@ -6,7 +6,16 @@ from math import isfinite, nan
 
 from uq.assess.failed_rows import bounded
 from uq.assess.integrated_inputs import why_not_integrated
-from uq.assess.statistic import COUNT, FACT, Context, Listing, Reader, Statistic, StatisticKind
+from uq.assess.statistic import (
+    COUNT,
+    FACT,
+    Context,
+    Listing,
+    Reader,
+    Statistic,
+    StatisticKind,
+    placed,
+)
 from uq.result.element import Element
 from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
@@ -20,6 +29,7 @@ LIFE = StatisticKind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
 _ROWS = replace(COUNT, readers=Reader.REPORT)
 
 
+@placed(json=2, columns=1, absent="{}")
 @bounded()
 def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield quantiles, with Kaplan-Meier estimates where they depend on censored rows."""
@@ -47,6 +57,7 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
         yield statistic
 
 
+@placed(json=4, absent="{}")
 @bounded()
 def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield the times by which a share of rows has ended, and how many rows have not."""
@@ -90,6 +101,7 @@ UNDEFINED = StatisticKind(
 """The share of undefined rows beside both probabilities; JSON has it among theirs."""
 
 
+@placed(json=3, absent="{}")
 @bounded(of_magnitude=True)
 def thresholds(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield P(above), P(below) and the share that is undefined for each threshold of an output."""

@@ -1,7 +1,5 @@
 """The statistics of an output. To add one, write its maker and list it here."""
 
-from typing import Any
-
 from uq.assess.statistic import Maker
 from uq.assess.statistics.counts import accuracy, counts, effective
 from uq.assess.statistics.moments import between_regimes, moments_of
@@ -21,11 +19,4 @@ STATISTICS: dict[str, Maker] = {
     "accuracy": accuracy,
     "integrated": integrated,
 }
-"""Name -> maker, in the order in which they are shown."""
-
-EMPTY: dict[str, Any] = {"tolerance": None, "quantiles": {}, "thresholds": {}, "b_lives": {}}
-"""Their JSON where they do not apply to an output; others are then left out."""
-
-JSON_ORDER = ("moments", *EMPTY, "counts")
-COLUMN_ORDER = ("moments", "quantiles", "tolerance", "counts", "accuracy")
-"""The promised order in JSON and in pandas; all others follow in the order of the table."""
+"""Name -> maker, in the order in which a terminal and a report show them."""

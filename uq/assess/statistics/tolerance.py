@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isnan
 from typing import Any
 
-from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind
+from uq.assess.statistic import COUNT, Context, Listing, Reader, Statistic, StatisticKind, placed
 from uq.result.element import Element
 from uq.stats.estimate import Estimate
 from uq.stats.order_statistics import (
@@ -17,6 +17,7 @@ from uq.stats.order_statistics import (
 from uq.study.file import USUAL
 
 
+@placed(json=1, columns=2, absent="null")
 def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield both one-sided bounds and the rows they need; failed rows count as the worst.
 

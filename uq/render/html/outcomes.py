@@ -21,7 +21,7 @@ from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
 from uq.text.numbers import capitalized, percent, percent_interval, threshold
-from uq.text.units import readable, typical, unit_of
+from uq.text.units import readable
 
 
 def status_table(result: Result, summary: Summary) -> HtmlTable:
@@ -74,10 +74,6 @@ def _share(estimate: Estimate, traced: str) -> Cell:
     return estimate_cell(percent(estimate.value), below, estimate, traced, SHARE)
 
 
-_VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance", "joint_bounds")
-"""First parts of the keys of statistics that are values of the output."""
-
-
 class Outcome:
     """Element of an output with its statistics, label and displayed unit.
 
@@ -93,8 +89,7 @@ class Outcome:
     def __init__(self, name: str, place: str, declared: Output, described: Described):
         self.name, self.place, self.declared = name, place, declared
         self.parts = described.parts
-        quantiles = (statistic.estimate.value for statistic in described.parts["quantiles"])
-        unit = unit_of(described.units, typical(quantiles))
+        unit = described.readable_unit
         self.unit = unit._replace(name=unbroken(unit.name))
 
     @property
@@ -118,8 +113,7 @@ class Outcome:
 
     def scale(self, statistic: Statistic) -> str:
         """Return the scale of the bars; all values of the output share one scale."""
-        is_value = statistic.key[0] in _VALUES and statistic.unit == self.declared.unit
-        return self.declared.unit if is_value else ""
+        return self.declared.unit if statistic.is_value_in(self.declared.unit) else ""
 
 
 def outcomes(result: Result, summary: Summary) -> list[Outcome]:
@@ -212,8 +206,9 @@ def words_used(of_outputs: list[Outcome]) -> list[str]:
     counted = {
         statistic.key[-1]
         for outcome in of_outputs
-        for statistic in outcome.parts["counts"]
-        if statistic.estimate.value
+        for statistics in outcome.parts.values()
+        for statistic in statistics
+        if statistic.key[0] in _WORDS and statistic.estimate.value
     }
     return [text for word, text in _WORDS.items() if word in counted]
 
