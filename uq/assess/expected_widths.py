@@ -124,9 +124,9 @@ def _quantile(values: Floats, p: float, rows: int, factor: float) -> float | Non
 
 
 def _share(element: Element, threshold: float, rows: int, factor: float) -> float:
-    values = element.for_thresholds[element.present]
+    above = element.above(threshold)[element.present]
     # Two more rows on each side: a pilot without a hit does not prove that there is none.
-    p = (np.count_nonzero(values > threshold) + 2) / (len(values) + 4)
+    p = (np.count_nonzero(above) + 2) / (len(above) + 4)
     return float(2 * factor * np.sqrt(p * (1 - p) / rows))
 
 

@@ -176,7 +176,7 @@ class Isolated:
         return self._connection
 
     def start(self) -> Connection:
-        """Start the process and load the model, unless done; again if it is killed meanwhile.
+        """Start the process and load the model, unless done; for rows, again if it is killed.
 
         Raises
         ------
@@ -187,7 +187,8 @@ class Isolated:
         """
         if self._connection and self._loaded:
             return self._connection
-        for _ in range(_STARTS):
+        # What kills a process that loads a model for the first time would kill the next one, too.
+        for _ in range(1 if self.spec.probed else _STARTS):
             if self._closed.is_set():
                 raise RunError("the process for the rows was ended")
             try:

@@ -14,5 +14,6 @@ Reading order; each part imports only those above it:
     fmu_description  description of an FMU [1]_, read by FMPy
     program_outputs  outputs of a program: from JSON, CSV, netCDF, or a pattern
     fmu              an FMU as a machine: each row simulates a separate instance
-    program          program as a machine, each row in a separate folder
+    program          program as a machine: each row is computed in a separate folder
+    program_or_fmu   choice between the two kinds of machine files: of a program, and of an FMU
 """

@@ -1,4 +1,4 @@
-"""Program as a machine, each row in a separate folder; selection of program or FMU."""
+"""Program as a machine: each row is computed in a separate folder."""
 
 import errno
 import hashlib
@@ -9,24 +9,18 @@ import subprocess
 import time
 from codecs import BOM_UTF8
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, fields
 from math import inf
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter
-
 from uq.contract import Model, Parameter, Status
-from uq.machines.fmu import code_of_fmu, fmu_of
-from uq.machines.fmu_description import FmuFile
 from uq.machines.machine_file import (
     FOLDER,
     MachineFile,
     MachineTable,
     code_files,
     content_of,
-    data_of,
     filled,
     read_machine,
     template_of,
@@ -48,11 +42,11 @@ _REMEDIES = {
 
 
 class ProgramError(Exception):
-    """A program that failed, in a sentence."""
+    """A program that failed, in a sentence; `is_killed` if it was killed, perhaps from outside."""
 
-
-class _KilledError(ProgramError):
-    """A program that was killed, perhaps from outside."""
+    def __init__(self, message: str, is_killed: bool = False) -> None:
+        super().__init__(message)
+        self.is_killed = is_killed
 
 
 def program_of(path: Path) -> Model:
@@ -135,12 +129,13 @@ class _Program:
         ProgramError, RowError
         """
         with self.folders.row(list(row.values())) as folder:
-            for _ in range(_TRIES - 1):
-                with suppress(_KilledError):
+            for left in reversed(range(_TRIES)):
+                try:
                     self._run(folder, row)
                     break
-            else:
-                self._run(folder, row)
+                except ProgramError as error:
+                    if not (error.is_killed and left):
+                        raise
             outputs = {
                 name: value_in(folder, name, output) for name, output in self.read.outputs.items()
             }
@@ -179,8 +174,8 @@ class _Program:
         if code == -signal.SIGXFSZ:
             raise ProgramError(f"was ended, as it wrote a file larger than {largest:.2g} bytes")
         if code:
-            kind = _KilledError if code in _KILLED else ProgramError
-            raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
+            message = _how_it_ended(code, machine.exit_codes, folder / STDERR_FILE)
+            raise ProgramError(message, is_killed=code in _KILLED)
 
     def _ended(self, process: subprocess.Popen[bytes], folder: Path, largest: int) -> int:
         """Return the exit code of a program, once it and all its descendants have ended."""
@@ -216,41 +211,3 @@ def _how_it_ended(code: int, meanings: Mapping[str, str], stderr_file: Path) -> 
         lines = file.read().decode(errors="replace").split("\n")
     last = next((line.strip() for line in reversed(lines) if line.strip()), "")
     return f"{text} ({last[:_LAST]})" if last else text
-
-
-def machine_of(path: Path) -> Model:
-    """Return the model of a machine file or FMU.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be used.
-    """
-    return fmu_of(path) if _is_fmu(path) else program_of(path)
-
-
-def code_of_machine(path: Path) -> str:
-    """Return a hash of all files that make up a machine.
-
-    Raises
-    ------
-    InputError
-        When one cannot be used.
-    """
-    return code_of_fmu(path) if _is_fmu(path) else code_of_program(path)
-
-
-def _is_fmu(path: Path) -> bool:
-    if path.suffix != ".toml":
-        return True
-    machine = data_of(path).get("machine")
-    return isinstance(machine, dict) and "fmu" in machine
-
-
-def machine_schema() -> dict[str, Any]:
-    """Return the JSON Schema of machine files (draft 7)."""
-    both: TypeAdapter[MachineFile | FmuFile] = TypeAdapter(MachineFile | FmuFile)
-    schema = both.json_schema(ref_template="#/definitions/{model}")
-    schema["definitions"] = schema.pop("$defs")
-    head = {"$schema": "http://json-schema.org/draft-07/schema#"}
-    return head | schema | {"title": "Machine of vibrolife"}

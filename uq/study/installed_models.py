@@ -91,7 +91,7 @@ def model_at(reference: str) -> Model:
         The model does not exist, or its package cannot be imported.
     """
     if reference.endswith(_MACHINES):
-        from uq.machines.program import machine_of
+        from uq.machines.program_or_fmu import machine_of
 
         return machine_of(Path(reference))
     plain, _, returns = reference.partition(_KNOWN_TO_RETURN)
@@ -309,7 +309,7 @@ def code_of(reference: str) -> str:
         The model has no source file.
     """
     if reference.endswith(_MACHINES):
-        from uq.machines.program import code_of_machine
+        from uq.machines.program_or_fmu import code_of_machine
 
         return code_of_machine(Path(reference))
     if reference.startswith(_SERVERS):

@@ -100,3 +100,14 @@ def test_inputs_of_a_regime_of_few_rows_have_no_outer_quantiles():
     input_quantiles = api.regimes(ds)["input_quantile"].isel(regime=0, parameter=0)
     assert np.isnan(input_quantiles.sel(probability=[0.05, 0.95])).all()
     assert np.isfinite(input_quantiles.sel(probability=0.5))
+
+
+def test_the_expected_width_counts_a_life_censored_at_the_threshold_as_above_it():
+    """As every statistic does: it has not ended there."""
+    values = np.repeat([1.0, 3.0], 32)
+    widths = []
+    for at in (2.0, 3.0):
+        ds = with_output(linear(samples=64), "life", values, "lifetime", censored=values == 3.0)
+        asked = asking(ds, outputs=["life"], thresholds={"life": [at]})
+        widths.append(expected_widths(Result(asked))["life"].thresholds[at])
+    assert widths[0] == widths[1]

@@ -1,5 +1,7 @@
 """A plain function as a machine: what is wrong with its file is one line."""
 
+import os
+
 import pytest
 from own_machines import WEAR, WEAR_STUDY
 
@@ -110,3 +112,31 @@ def test_an_output_that_is_missing_is_named_with_what_was_returned_instead():
     assert str(caught.value) == (
         "returned no 'stress' (it returned 'strees', 'mass'); did you mean 'strees'?"
     )
+
+
+KILLS_ITS_IMPORTER = """
+import os
+import uq
+
+if os.getpid() != {here}:
+    with open({tries!r}, "a") as file:
+        file.write("tried\\n")
+    os._exit(3)
+
+@uq.machine
+def wear(load=1.0):
+    return {{"life": load}}
+"""
+
+
+def test_an_import_that_kills_the_process_is_tried_once(uq, write_function, folder):
+    tries = folder / "tries"
+    ended = uq(
+        "check",
+        "own.toml",
+        "--model",
+        write_function(KILLS_ITS_IMPORTER.format(here=os.getpid(), tries=str(tries))),
+    )
+    assert (ended.code, ended.out) == (1, "")
+    assert ended.err.count("\n") == 1 and "could not start: exit code 3" in ended.err
+    assert tries.read_text().splitlines() == ["tried"]

@@ -182,3 +182,12 @@ def test_a_machine_file_in_the_place_of_a_study_is_one_line(uq, write_program):
     message = uq("run", "machine.toml").err
     assert message.count("\n") == 1
     assert "is a machine file; run a study of it: uq run STUDY --model machine.toml" in message
+
+
+def test_a_program_that_is_killed_is_tried_again_and_named_as_any_other_failure(
+    uq, write_program, folder
+):
+    write_program('#!/bin/sh\necho >> "$0.tries"\nkill -9 $$\n')
+    ended = uq("simulate", "machine.toml")
+    assert "ProgramError: was ended by signal 9 (Killed)" in ended.err + ended.out
+    assert len((folder / "program.tries").read_text().splitlines()) == 3

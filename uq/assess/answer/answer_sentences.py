@@ -97,7 +97,7 @@ class Answer:
             - ``levels``: ``shares`` of the variance, and the probability of ``another_regime``.
             - ``advice``: rule -> ``text``, ``inputs``, ``rows``, and ``tolerances``: for each
               compared one, the number ``what`` ``before`` and ``after`` the scatter of ``inputs``
-              is halved.
+              is halved. A second piece of advice of a rule is under ``rows_2``, and so on.
 
             A promise has the ranks of its bounds among all rows (``lower_is_row``) and, where too
             many rows share the last value for a bound, their share (``share_at_largest``). An event
@@ -129,7 +129,7 @@ class Answer:
         if self.mixing.members:
             members["intermingled"] = self.mixing
         members["levels"] = self.levels and self.levels.fact
-        members["advice"] = Fact({advice.rule: advice.fact for advice in self.advice})
+        members["advice"] = Fact({key: advice.fact for key, advice in self.advice_by_key.items()})
         of_lead = [] if self.lead is None else ["quantities", self.lead.name]
         more = {
             "title": self.title,
@@ -144,6 +144,15 @@ class Answer:
             mentions=(("rows",), ("failed",)),
             more=more,
         )
+
+    @property
+    def advice_by_key(self) -> dict[str, Advice]:
+        """Advice by its key in JSON: the rule, with a number from the second of a rule on."""
+        by_key: dict[str, Advice] = {}
+        for advice in self.advice:
+            count = 1 + sum(earlier.rule == advice.rule for earlier in by_key.values())
+            by_key[advice.rule if count == 1 else f"{advice.rule}_{count}"] = advice
+        return by_key
 
     @property
     def assumptions(self) -> tuple[str, ...]:

@@ -285,16 +285,17 @@ def _to_do(answer: Answer) -> Markup:
     if not answer.advice:
         return Markup()
     entries = (
-        Markup("{}{}").format(_advice(answer, advice), below(advice)) for advice in answer.advice
+        Markup("{}{}").format(_advice(answer, key, advice), below(advice))
+        for key, advice in answer.advice_by_key.items()
     )
     return _block("todo", [Markup("<h3>What to do</h3>"), items(entries)])
 
 
-def _advice(answer: Answer, advice: Advice) -> Markup:
+def _advice(answer: Answer, key: str, advice: Advice) -> Markup:
     """Return one recommendation with its alternatives."""
     if not advice.key:
         has_number = advice.rows is not None
-        return keyed(answer.fact, "advice", advice.rule) if has_number else shown(advice.sentence)
+        return keyed(answer.fact, "advice", key) if has_number else shown(advice.sentence)
     sure = [] if advice.sure is None else [with_keys(advice.sure.promised, advice.sure.key)]
     worse = (with_keys(harm.besides, harm.key) for harm in advice.harmed)
     also = with_keys(advice.also, *(tolerance.key for tolerance in advice.alike))

@@ -17,6 +17,7 @@ from computed import (
 
 import uq
 from uq.assess.answer.answer import answer
+from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.tightening import halved
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.stats.estimate import Estimate
@@ -196,3 +197,14 @@ def test_more_successes_and_fewer_other_ends_are_better():
     better = TighterTolerance(("x",), "", Estimate(0.5), Estimate(0.6), wants_more=True)
     assert better.helps and not replace(better, wants_more=False).helps
     assert replace(better, wants_more=None).helps
+
+
+def test_two_pieces_of_advice_of_one_rule_have_a_key_each():
+    conclusions = answer(linear(samples=20))
+    advice = [Advice("rows", "Compute more."), Advice("keep", "Stay."), Advice("rows", "Wait.")]
+    document = replace(conclusions, advice=tuple(advice)).fact.json["advice"]
+    assert {key: entry["text"] for key, entry in document.items()} == {
+        "rows": "Compute more.",
+        "keep": "Stay.",
+        "rows_2": "Wait.",
+    }
