@@ -206,6 +206,16 @@ def definitions(tree, before=""):
     return nodes
 
 
+TWO_SCREENS = 120
+"""Lines of text."""
+
+
+def test_the_architecture_fits_on_two_screens_with_one_picture():
+    text = SOURCES["docs/architecture.md"]
+    assert len(text.splitlines()) <= TWO_SCREENS
+    assert text.count("![") == 1
+
+
 def test_a_row_and_a_number_take_the_path_that_is_described(folder, monkeypatch, write_study):
     path = write_study("exponential-wear", uncertain=("rate",))
     monkeypatch.setattr(plots, "FIGURES", {})
