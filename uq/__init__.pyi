@@ -3,10 +3,10 @@
 from . import plots as plots
 from .assess.answer.answer import answer as answer
 from .assess.comparison import compare as compare
+from .assess.components_by_level import levels as levels
 from .assess.convergence import enough as enough
 from .assess.convergence import running_estimates as running_estimates
 from .assess.fleet import fleet as fleet
-from .assess.components_by_level import levels as levels
 from .assess.life_fit import life_fits as life_fits
 from .assess.regimes import regimes as regimes
 from .assess.sensitivity_table import sensitivity as sensitivity

@@ -47,7 +47,7 @@ _CENSORED = "rows were censored before that time"
 
 @dataclass(frozen=True)
 class Population(Sample):
-    """The rows of an element that take part in its statistics.
+    """Rows of an element with weights, or with the law of a life each: a weighted mixture.
 
     References
     ----------
@@ -345,7 +345,10 @@ def as_sample(
     confidence: float = CONFIDENCE,
     weights: Smoothed | None = None,
 ) -> Sample:
-    """Return the rows of an element as a sample.
+    """Return the rows of an element as a sample, by the strategy that suits them.
+
+    `CountedRows` where all rows are of equal weight and have the lives that were computed;
+    `Population` where rows have weights, or an input of a life is integrated exactly.
 
     Parameters
     ----------
