@@ -14,6 +14,7 @@ from browser import CHROMIUM, tab
 from hypothesis import HealthCheck, settings
 from own_machines import PAD, PAD_PROGRAM, WEAR_STUDY
 from own_study import own_study
+from shared_compilation import compile_once_for_all_processes
 
 import models.numerics.jit  # noqa: F401  (before numba: all tests compile as the command does)
 from uq.cli import main
@@ -24,6 +25,8 @@ _numbers = itertools.count()
 # How long an example takes says how busy the machine is.
 settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("busy")
+
+compile_once_for_all_processes()
 
 
 class Ended(NamedTuple):
