@@ -12,6 +12,7 @@ import psutil
 import pytest
 from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
+from killed_runs import until
 
 from uq.errors import InputError, RunError
 from uq.execution import clusters, runner
@@ -105,6 +106,16 @@ def patiently(address, *arguments, call=compute, **options):
             time.sleep(0.5)
 
 
+def processes_of_rows(worker):
+    """Return the processes in which a worker computes rows."""
+    processes = []
+    for process in psutil.Process(worker.pid).children(recursive=True):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            if "uq.execution.child" in process.cmdline():
+                processes.append(process)
+    return processes
+
+
 pytestmark = pytest.mark.slow
 
 
@@ -128,23 +139,25 @@ def test_workers_come_and_go(start, study, injected):
 def test_a_chunk_that_loses_its_worker_too_often_is_halved(start, study_of, monkeypatch, injected):
     study = study_of(seconds=0.1, samples=60)
     failed = []
-    real = Workers._failed
+    failure, returned = Workers._failed, Workers.returned
     monkeypatch.setattr(
         Workers,
         "_failed",
-        lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
+        lambda self, sent, error: failed.append(type(error).__name__) or failure(self, sent, error),
     )
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "0")
     there = start()
     workers = [there.started[-1]]
 
-    def kill(progress):
-        if workers and progress.under_way:
-            time.sleep(0.5)  # it computes
+    def kill_and_return(self):
+        if workers:  # the first rows were computed here; now the worker has chunks
+            until(lambda: processes_of_rows(workers[0]))
             there.end(workers.pop())
             there.add_worker()
+        return returned(self)
 
-    ds = patiently(there.address, study, chunk_rows=20, progress=kill)
+    monkeypatch.setattr(Workers, "returned", kill_and_return)
+    ds = patiently(there.address, study, chunk_rows=20)
     assert "KilledWorker" in failed
     injected("worker of a cluster killed too often with a chunk")
     assert ds.identical(computed_here(study))
@@ -215,5 +228,4 @@ def test_certificates_are_used_and_demanded(start, study, folder):
 def test_workers_left_alone_keep_no_process(start, study):
     there = start()
     patiently(there.address, study, chunk_rows=10)
-    family = psutil.Process(there.started[1].pid).children(recursive=True)
-    assert not [child for child in family if "uq.execution.child" in child.cmdline()]
+    assert not processes_of_rows(there.started[1])
