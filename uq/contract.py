@@ -333,7 +333,7 @@ class Model:
     block: int = 1
     references: tuple[str, ...] = ()
     headline: tuple[str, ...] = ()
-    row_name: tuple[str, str] = ("row", "rows")
+    row_name: tuple[str, str] = ("run", "runs")
     uncertain: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def alone(self, output: str) -> "Model":

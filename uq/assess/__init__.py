@@ -44,4 +44,6 @@ Reading order; each part imports only those above it:
     what_if            a result under other laws of its inputs: the same rows, weighted
     findings           a result and what several tables and figures show of it
     answer             the answer of a study
+    card_numbers       the numbers of a card: bounds, quantiles and probabilities
+    card               the card of a result: what fits on a screen
 """
