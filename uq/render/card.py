@@ -169,9 +169,9 @@ def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
 
 def _widths(card: Card) -> tuple[int, int]:
     """Return the widths of labels and of values."""
-    labels = (len(_label(line, card)) for line in card.headline)
-    values = (len(_shown(line)) for line in card.headline if not isnan(line.estimate.value))
-    return max(17, *labels) + 2, max(10, *values)
+    labels = [len(_label(line, card)) for line in card.headline]
+    values = [len(_shown(line)) for line in card.headline if not isnan(line.estimate.value)]
+    return max([17, *labels]) + 2, max([10, *values])
 
 
 def _label(line: Headline, card: Card) -> str:
