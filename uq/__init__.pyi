@@ -29,6 +29,7 @@ from .learning.posterior_result import as_unit as as_unit
 from .machines.function import machine as machine
 from .machines.returned import Returned as Returned
 from .machines.returned import censored as censored
+from .render.card import card as card
 from .render.trace.trace import trace as trace
 from .result.elements import labels as labels
 from .result.result_file import open_result as open_result

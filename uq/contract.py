@@ -309,6 +309,12 @@ class Model:
         Number of rows that the kernel advances together; shorter chunks are less efficient.
     references : tuple of str
         References to cite.
+    headline : tuple of str
+        Outputs that a new study reports, the most important first.
+    row_name : tuple of str
+        Singular and plural of what a row represents: ``rod``, ``rods``.
+    uncertain : dict of str to dict
+        Input -> its law in a new study, as in a study file, with its source.
     """
 
     name: str
@@ -326,6 +332,9 @@ class Model:
     random_unless: Mapping[str, float] = field(default_factory=dict)
     block: int = 1
     references: tuple[str, ...] = ()
+    headline: tuple[str, ...] = ()
+    row_name: tuple[str, str] = ("run", "runs")
+    uncertain: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def alone(self, output: str) -> "Model":
         """Return a model that computes only one of the `cheap` outputs."""

@@ -6,6 +6,7 @@ to harmonic excitation", ASME IMECE 2002, and J. Sound Vib. 278 (2004) 1025.
 Reading order; each part imports only those above it:
 
     parameters    inputs, settings and outputs
+    uncertain     laws of inputs in a new study
     structure     the rod as one oscillator per mode, and the load on it
     exact         one propagator: from event to event, the reference
     lanes         the other: many beams at a time in fixed steps, twenty times as fast
@@ -23,6 +24,7 @@ Reading order; each part imports only those above it:
 from typing import Any
 
 from models.beam.parameters import OUTPUTS, Params, Settings, coordinates
+from models.beam.uncertain import UNCERTAIN
 from uq.contract import Model, Trajectory
 
 
@@ -60,4 +62,7 @@ MODEL = Model(
         "to harmonic excitation, ASME IMECE 2002",
         "J. Knudsen, A. R. Massih, J. Sound Vib. 278 (2004) 1025",
     ),
+    headline=("first_time_to_depth", "work_rate_heavy"),
+    row_name=("rod", "rods"),
+    uncertain=UNCERTAIN,
 )

@@ -6,6 +6,7 @@ system", Nonlinear Dyn. 63 (2011) 35.
 Reading order; each part imports only those above it:
 
     parameters    inputs, settings and outputs
+    uncertain     laws of inputs in a new study
     theory        the equations
     exact         one mole at a time: the reference
     lanes         thirty-two moles at a time: the propagator of studies
@@ -19,6 +20,7 @@ Reading order; each part imports only those above it:
 from typing import Any
 
 from models.mole.parameters import OUTPUTS, Params, Settings, coordinates
+from models.mole.uncertain import UNCERTAIN
 from uq.contract import Model, Trajectory
 
 
@@ -49,4 +51,7 @@ MODEL = Model(
         "J.-H. Ho, V.-D. Nguyen, K.-C. Woo, Nonlinear dynamics of a new electro-vibro-impact "
         "system, Nonlinear Dyn. 63 (2011) 35-49",
     ),
+    headline=("progression_rate", "impact_work_rate"),
+    row_name=("mole", "moles"),
+    uncertain=UNCERTAIN,
 )

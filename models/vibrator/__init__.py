@@ -6,6 +6,7 @@ machines", Arch. Min. Sci. 59 (2014).
 Reading order; each part imports only those above it:
 
     parameters    inputs, settings and outputs
+    uncertain     laws of inputs in a new study
     theory        the averaged theory of synchronous running
     equations     the equations of motion
     exact         one propagator: any machine, one at a time
@@ -19,6 +20,7 @@ Reading order; each part imports only those above it:
 from typing import Any
 
 from models.vibrator.parameters import OUTPUTS, Params, Settings, coordinates
+from models.vibrator.uncertain import UNCERTAIN
 from uq.contract import Model, Trajectory
 
 
@@ -57,4 +59,7 @@ MODEL = Model(
         "J. Michalczyk, G. Cieplok, Disturbances in self-synchronisation of vibrators in vibratory "
         "machines, Arch. Min. Sci. 59 (2014)",
     ),
+    headline=("disphasing_angle", "synchronisation_time"),
+    row_name=("machine", "machines"),
+    uncertain=UNCERTAIN,
 )

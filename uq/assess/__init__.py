@@ -44,4 +44,6 @@ Reading order; each part imports only those above it:
     what_if                statistics under other laws of the inputs: the same rows, weighted
     findings               all that tables and figures show of a result, each computed once
     answer                 the answer: what can be promised, what decides it, and what to do
+    card_numbers           the numbers of a card: bounds, quantiles and probabilities
+    card                   the card of a result: what fits on a screen
 """

@@ -24,6 +24,8 @@ ModelName = Annotated[
 StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
 ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
+Explain = Annotated[bool, typer.Option("--explain", help="Show the answer in sentences.")]
+Full = Annotated[bool, typer.Option("--full", help="Show statistics of each output.")]
 Plain = Annotated[
     bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
 ]

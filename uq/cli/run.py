@@ -81,12 +81,9 @@ def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixe
         from uq.assess.findings import Findings
 
         with_model(result.dataset, study.model_reference)
-        summary_tables.show_findings(Findings(result))
-        console.print()
         console.print(note)
-        name = shlex.quote(str(target))
-        console.print(f"Next: uq report {name} --open", soft_wrap=True)
-        console.print(f"      uq sensitivity {name}", soft_wrap=True)
+        console.print(f"Page: uq report {shlex.quote(str(target))} --open\n", soft_wrap=True)
+        summary_tables.show_findings(Findings(result))
     failed = int(np.count_nonzero(result.failed))
     share = failed / len(result)
     if share <= study.analysis.max_failed:

@@ -5,8 +5,11 @@ from itertools import chain
 from math import isfinite, isnan
 from typing import NamedTuple
 
+from rich.text import Text
+
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
+from uq.assess.card import card_of
 from uq.assess.findings import Findings
 from uq.assess.life_fit import Fit
 from uq.assess.regimes import in_words
@@ -15,8 +18,10 @@ from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import REGIME, Described, Summary
 from uq.assess.targets import split_name
 from uq.cli.printing import CELLS, console, grid, heading, note, paragraph, title
+from uq.render.card import lines_of
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, failed_bounds_text, interval_text
+from uq.text.literals import plain
 from uq.text.numbers import compared, counted, estimated, in_brackets, number, percent
 from uq.text.units import ReadableUnit, readable
 
@@ -25,10 +30,19 @@ _LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, to
 _MOST_EFFECTS = 3
 
 
-def show_findings(findings: Findings) -> None:
-    """Print the answer of a study, then its summary."""
-    show_answer(conclude(findings))
-    show_summary(findings.result, findings.summary, findings.boundary)
+def show_findings(findings: Findings, *, explain: bool = False, full: bool = False) -> None:
+    """Print the answer of a study in sentences, its statistics, or by default its card."""
+    answer = conclude(findings)
+    if explain:
+        show_answer(answer)
+    if full:
+        show_summary(findings.result, findings.summary, findings.boundary)
+    if explain or full:
+        return
+    for line in lines_of(card_of(findings, answer)):
+        text = Text(plain(line.text), style="yellow" if line.warns else "")
+        text.stylize("bold", *line.bold)
+        console.print(text, soft_wrap=True)
 
 
 def show_summary(result: Result, summary: Summary, boundary: Statistic | None = None) -> None:

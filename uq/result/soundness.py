@@ -91,7 +91,7 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
     for text in _TEXTS:
         if not isinstance(ds.attrs.get(text), str):
             yield f"attribute '{text}' is not text"
-    for text in ("code", "study_sha256", *provenance()):
+    for text in ("code", "study_sha256", "row_name", *provenance()):
         if not isinstance(ds.attrs.get(text, ""), str):
             yield f"attribute '{text}' is not text"
     for number in _NUMBERS:

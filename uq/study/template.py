@@ -26,7 +26,9 @@ def template(model: Model, reference: str = "") -> str:
     """Return a commented study file that runs unchanged.
 
     A line that starts with ``#`` and a key is an entry with its default: remove the ``#`` to
-    change it. The first parameters for which an example law is valid are uncertain.
+    change it. The inputs that the model declares uncertain have the declared laws, and its headline
+    outputs are reported. For a model that declares none, the first parameters for which an example
+    law is valid are uncertain.
 
     Parameters
     ----------
@@ -39,16 +41,17 @@ def template(model: Model, reference: str = "") -> str:
     str
         TOML.
     """
-    suited = ((n, _example_law(model.parameter(n), x)) for n, x in model.nominal.items())
-    laws = dict(islice(((name, law) for name, law in suited if law), _UNCERTAIN))
+    laws = {name: law_of(law) for name, law in model.uncertain.items()} or _example_laws(model)
     outputs = model.given(model.settings()).outputs
     numbers = [name for name, output in outputs.items() if not output.is_category]
     given_by = [] if reference in ("", model.name) else [f"# run with --model {_line(reference)}"]
     designs = (f"# {name}: {design.meaning}" for name, design in DESIGNS.items())
     design = _entries(DesignTable, _DESIGN, {"until": {"output": numbers[0], "half_width": 1.0}})
+    tolerance = {"coverage": 0.95, "confidence": 0.95}
+    headline = {"outputs": list(model.headline), "tolerance": tolerance} if model.headline else {}
     examples = {
         "outputs": list(outputs),
-        "tolerance": {"coverage": 0.95, "confidence": 0.95},
+        "tolerance": tolerance,
         "thresholds": {numbers[0]: 1.0},
         "sensitivity": ["first-order"],
     }
@@ -72,11 +75,17 @@ description = {toml(_line(model.title))}
 [settings]
 {_lines(_settings(model))}
 [analysis]
-{_lines(_entries(AnalysisTable, {}, examples))}"""
+{_lines(_entries(AnalysisTable, headline, examples))}"""
 
 
 def _lines(lines: Iterable[str]) -> str:
     return "".join(f"{line}\n" for line in lines)
+
+
+def _example_laws(model: Model) -> dict[str, Law]:
+    """Return an example law of the first parameters that it suits."""
+    suited = ((n, _example_law(model.parameter(n), x)) for n, x in model.nominal.items())
+    return dict(islice(((name, law) for name, law in suited if law), _UNCERTAIN))
 
 
 def _example_law(parameter: Parameter, nominal: float) -> Law | None:

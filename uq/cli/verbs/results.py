@@ -104,10 +104,13 @@ def summary(
         bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
     ] = False,
     plain: given.Plain = False,
+    explain: given.Explain = False,
+    full: given.Full = False,
     json: given.Json = False,
 ) -> None:
-    """Show the answer, and statistics of each output."""
+    """Show the answer on a card, in sentences or in tables."""
     from uq.assess.answer.answer import conclude
+    from uq.assess.card import card_of
     from uq.assess.findings import Findings
     from uq.assess.regimes import boundary_facts
     from uq.assess.summary import summarise
@@ -119,18 +122,20 @@ def summary(
     opened = Result.open(result)
     findings = Findings(opened)
     answered = regime is None and not plain  # the answer is that of all rows
-    if answered and not (fits or json):
-        summary_tables.show_findings(findings)
+    statistics = findings.summary
+    if fits or not answered:
+        statistics = summarise(opened, regime=regime, fits=fits, plain=plain)
+    if json:
+        facts = summary_facts(statistics).json
+        if answered:
+            answer = conclude(findings)
+            facts |= boundary_facts(opened, findings.boundary).json
+            facts |= {"answer": answer.fact.json, "card": card_of(findings, answer).json}
+        print_json(facts)
+    elif answered and not fits:
+        summary_tables.show_findings(findings, explain=explain, full=full)
     else:
-        statistics = findings.summary
-        if fits or not answered:
-            statistics = summarise(opened, regime=regime, fits=fits, plain=plain)
-        if json:
-            answer = {"answer": conclude(findings).fact.json} if answered else {}
-            between = boundary_facts(opened, findings.boundary).json if answered else {}
-            print_json(summary_facts(statistics).json | between | answer)
-        else:
-            summary_tables.show_summary(opened, statistics)
+        summary_tables.show_summary(opened, statistics)
     _warn_if_altered(result)
 
 

@@ -1,0 +1,294 @@
+"""The card of a result: the few numbers, causes, checks and next steps that fit on a screen."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite
+from typing import Any, NamedTuple
+
+from uq.assess.answer.answer import conclude
+from uq.assess.answer.answer_sentences import Answer
+from uq.assess.answer.contributions import AverageEffect, Contribution
+from uq.assess.answer.piece_of_advice import Advice
+from uq.assess.answer.quantities import Quantity
+from uq.assess.answer.rankings import Ranking
+from uq.assess.answer.tightening import tightened
+from uq.assess.answer.tolerance_effects import SHARE_OF, TighterTolerance
+from uq.assess.answer.wording import (
+    ASSUMED,
+    CHOSEN,
+    called_together,
+    mark_of,
+)
+from uq.assess.card_numbers import Headline, headlines
+from uq.assess.findings import Findings
+from uq.assess.summary import REGIME
+from uq.result.result import Result
+from uq.sampling.designs import DESIGNS, PLAIN
+from uq.stats import estimate_json
+from uq.text.numbers import capitalized, counted, grouped, percent
+from uq.text.units import readable
+
+MOST_CAUSES = 4
+
+
+class Cause(NamedTuple):
+    """Inputs that contribute alike to the scatter of the subject of a study.
+
+    Attributes
+    ----------
+    contribution : Contribution
+    effect : AverageEffect or None
+        Average change of the subject with the first input; None if unknown.
+    tightened : TighterTolerance or None
+        A number of the subject with half the scatter of the inputs; None if unknown.
+    """
+
+    contribution: Contribution
+    effect: AverageEffect | None
+    tightened: TighterTolerance | None
+
+    def json(self, share_of: str) -> Iterator[dict[str, Any]]:
+        """Yield the numbers of each input."""
+        effect = None if self.effect is None else self.effect.fact("").json
+        tightened = None if self.tightened is None else self.tightened.fact.json
+        indices = self.contribution.indices
+        for name, index in zip(self.contribution.inputs, indices, strict=True):
+            numbers = [estimate_json.number(number) for number in index.numbers]
+            shares = dict(zip(("share", "low", "high"), numbers, strict=True))
+            about = {"of": share_of, "effect": effect, "tightened": tightened}
+            yield {"input": name} | shares | about
+
+
+@dataclass(frozen=True)
+class Card:
+    """The answer of a study on one screen.
+
+    Attributes
+    ----------
+    name, title, subject : str
+        Name and description of the study; the output that it is about.
+    besides : str
+        The output of the numbers after those of the regimes, if the regimes come first.
+    model, design : str
+    rows, failed : int
+    row_name : tuple of str
+        Singular and plural of what a row represents.
+    headline : tuple of Headline
+    assumed : tuple of str
+        Assumed inputs to which every life is proportional.
+    assumptions : str
+        How many laws are assumed, and which of the causes; "" for none.
+    causes : tuple of Cause
+    index : str
+        Key of the index of the causes: ``S1``.
+    share_of : str
+        What the index is a share of: ``log life``, ``variance``, ``P(periodic)``; "" of others.
+    indices_first : bool
+        Whether the design serves sensitivity indices, so that the causes come first.
+    no_causes : str
+        Reason why no input leads, or "".
+    checks, next : tuple of str
+        Clauses.
+    """
+
+    name: str
+    title: str
+    subject: str
+    besides: str
+    model: str
+    design: str
+    rows: int
+    failed: int
+    row_name: tuple[str, str]
+    headline: tuple[Headline, ...] = ()
+    assumed: tuple[str, ...] = ()
+    assumptions: str = ""
+    causes: tuple[Cause, ...] = ()
+    index: str = ""
+    share_of: str = ""
+    indices_first: bool = False
+    no_causes: str = ""
+    checks: tuple[str, ...] = ()
+    next: tuple[str, ...] = ()
+
+    @property
+    def warning(self) -> str:
+        """Clause on assumed inputs that set the scale of every life; "" without any."""
+        if not self.assumed:
+            return ""
+        is_single = len(self.assumed) == 1
+        how = "sets the scale and is assumed" if is_single else "set the scale and are assumed"
+        return f"not a prediction: {called_together(self.assumed)} {how}"
+
+    @property
+    def json(self) -> dict[str, Any]:
+        """The card in plain data; numbers in the units of the outputs."""
+        causes = (entry for cause in self.causes for entry in cause.json(self.share_of))
+        warnings = filter(None, (self.warning, self.assumptions))
+        return {
+            "title": self.title,
+            "rows": self.rows,
+            "failed": self.failed,
+            "headline": [line.json for line in self.headline],
+            "assumed": list(self.assumed),
+            "causes": list(causes),
+            "checks": [*self.checks, *warnings],
+            "next": list(self.next),
+        }
+
+
+def card_of(findings: Findings, answer: Answer | None = None) -> Card:
+    """Return the card of a result, from its answer if that is known."""
+    result, answer = findings.result, answer or conclude(findings)
+    attrs, lead = result.dataset.attrs, answer.lead
+    ranking = _ranking(answer)
+    causes = tuple(_causes(result, answer, ranking))
+    no_causes = ""
+    if ranking is not None and not causes:
+        no_causes = ranking.reason or "no input contributes measurably"
+    singular, _, plural = str(attrs.get("row_name", "run runs")).partition(" ")
+    return Card(
+        result.study.study.name,
+        str(attrs["title"]),
+        _subject(findings, answer),
+        capitalized(lead.words) if answer.regimes_first and lead is not None else "",
+        str(attrs["source"]),
+        result.design_name,
+        answer.rows,
+        answer.failed,
+        (singular, plural),
+        tuple(headlines(findings, answer)),
+        () if lead is None else lead.scaled_by,
+        _assumptions(result, causes),
+        causes,
+        "" if ranking is None else ranking.kind,
+        "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
+        DESIGNS[result.design_name].layout is not PLAIN,
+        no_causes,
+        tuple(_checks(answer, plural, no_causes)),
+        tuple(_next(answer.advice)),
+    )
+
+
+def _subject(findings: Findings, answer: Answer) -> str:
+    if answer.regimes_first:
+        return capitalized(readable(str(findings.result.dataset[REGIME].attrs["long_name"])))
+    return "" if answer.lead is None else capitalized(answer.lead.words)
+
+
+def _share_of(ranking: Ranking, is_life: bool) -> str:
+    if not any(entry.share_of_variance for entry in ranking.contributions):
+        return ""
+    if ranking.of_event:
+        return ranking.target.replace("regime=", "")
+    if "logarithm" in ranking.share_of:
+        return "log life" if is_life else "logarithm"
+    return "variance"
+
+
+def _assumptions(result: Result, causes: Sequence[Cause]) -> str:
+    laws = [name for name in result.study.uncertain if name in result.dataset.variables]
+    assumed = [name for name in laws if mark_of(result, name) == ASSUMED]
+    if not assumed:
+        return ""
+    leading = [name for cause in causes[:1] for name in cause.contribution.sure]
+    among = called_together([name for name in leading if name in assumed])
+    text = f"{len(assumed)} of {counted(len(laws), 'law')} assumed"
+    return f"{text}, {among} among them" if among and 1 < len(assumed) < len(laws) else text
+
+
+def _ranking(answer: Answer) -> Ranking | None:
+    """Return the ranking of the subject of the study."""
+    if answer.regimes_first:
+        causes = (regime.ranking for regime in answer.regime_causes)
+        return next((ranking for ranking in causes if ranking is not None), None)
+    return None if answer.lead is None else answer.lead.ranking
+
+
+def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator[Cause]:
+    """Yield the leading causes, each with the same number under half its scatter."""
+    if ranking is None or ranking.leader is None:
+        return
+    lead = None if answer.regimes_first else answer.lead
+    compared = [entry for advice in answer.advice for entry in advice.tolerances]
+    wanted = [entry for entry in compared if lead and entry.is_share != lead.is_life] or compared
+    for contribution in ranking.contributions[:MOST_CAUSES]:
+        effect = contribution.changes[0] if contribution.changes else None
+        shown = None
+        if lead is not None and wanted:
+            same = [entry for entry in compared if set(entry.inputs) == set(contribution.inputs)]
+            if not same and all(mark_of(result, name) != CHOSEN for name in contribution.inputs):
+                same = [*tightened(result, lead, contribution.inputs)]
+            shown = next(
+                (
+                    entry
+                    for entry in same
+                    if entry.statistic == wanted[0].statistic and not entry.reason
+                ),
+                None,
+            )
+        yield Cause(contribution, effect, shown)
+
+
+def _checks(answer: Answer, plural: str, no_causes: str) -> Iterator[str]:
+    enough, lead = answer.enough, answer.lead
+    if answer.failed:
+        share = percent(answer.failed / max(answer.rows, 1))
+        yield f"{share} of the {plural} failed and are left out"
+    if enough.unknown:
+        yield f"sample size cannot be judged: {enough.unknown}"
+    elif enough.question:
+        clause = enough.question[0][0]
+        yield f"too few {plural}" + f": {clause}" * (clause != no_causes)
+    else:
+        yield f"enough {plural}"
+    error = {} if lead is None or lead.own_error is None else lead.own_error.members
+    if error.get("rows_missing_it"):
+        text = f"{percent(error['rows_missing_it'])} miss {100 * error['accuracy']:g} % accuracy"
+        yield text + _moved(lead, error)
+    if answer.regimes and not answer.regimes_first:
+        yield f"{percent(answer.regimes[0].share.value)} {answer.regimes[0].predicate}"
+
+
+def _moved(lead: Quantity | None, error: Any) -> str:
+    """Return the bound if every value were wrong by its stated error; "" if that is the same."""
+    promise = None if lead is None else lead.promise
+    if promise is None:
+        return ""
+    for name, bound, towards in (("lower", promise.lower, -inf), ("upper", promise.upper, inf)):
+        if isfinite(bound) and error[name] is not None:
+            moved = promise.unit.text(error[name], towards)
+            return f" (bound then {moved})" * (moved != promise.unit.text(bound, towards))
+    return ""
+
+
+def _next(advice: Sequence[Advice]) -> Iterator[str]:
+    """Yield each piece of advice in a few words, the most urgent first."""
+    for entry in advice:
+        words = called_together(entry.inputs) if entry.inputs else ""
+        match entry.rule:
+            case "measure":
+                yield f"measure {words}"
+            case "tighten" if entry.tightened is not None and not entry.tightened.reason:
+                yield f"tighten {words}"
+            case "chance":
+                yield "expect little of tolerances: chance decides"
+            case "source":
+                yield f"add a source for {words}"
+            case "rows" if entry.rows is not None:
+                yield f"compute about {grouped(entry.rows)} rows"
+            case "failed":
+                yield "fix the failed rows"
+            case "finer":
+                yield "compute more accurate rows, not more"
+            case "keep":
+                yield f"keep {words} in its good range"
+            case "nothing" if len(advice) == 1:
+                yield "nothing: the question is settled"
+
+
+def statistic_name(tolerance: TighterTolerance) -> str:
+    """Return the number that a tolerance changes, in a few words."""
+    name = tolerance.statistic.removeprefix("the ")
+    event = name.removeprefix(SHARE_OF.removeprefix("the "))
+    return event.replace("exceed", "beyond").removeprefix("end ").removesuffix(" in magnitude")

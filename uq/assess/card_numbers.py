@@ -1,0 +1,161 @@
+"""The numbers of a card: bounds, quantiles and probabilities, each with a label and a key."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import inf, isfinite, nan
+from typing import Any
+
+from uq.assess.answer.answer_sentences import Answer
+from uq.assess.answer.events import Event
+from uq.assess.answer.quantities import Quantity
+from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.wording import DisplayUnit
+from uq.assess.findings import Findings
+from uq.stats import estimate_json
+from uq.stats.estimate import Estimate
+from uq.text.keys import key_of
+
+MOST_REGIMES = 4
+
+
+@dataclass(frozen=True)
+class Headline:
+    """A number of a card.
+
+    Attributes
+    ----------
+    key : str
+        For ``uq trace``; of a range, that of its lower end.
+    label : str
+    estimate : Estimate
+        In the unit of the output; a bound has no interval, a range no value.
+    unit : str
+        CF unit of the estimate; ``1`` of a probability.
+    shown : DisplayUnit or None
+        Unit in which it is shown; None for a probability in per cent.
+    towards : float
+        Infinite for a bound: it is rounded to its safe side.
+    note : str
+        Meaning of a bound, shown instead of an interval.
+    leads : bool
+        Whether it answers the question of the study.
+    """
+
+    key: str
+    label: str
+    estimate: Estimate
+    unit: str
+    shown: DisplayUnit | None
+    towards: float = 0.0
+    note: str = ""
+    leads: bool = False
+
+    @property
+    def json(self) -> dict[str, Any]:
+        """Key, label, numbers and unit."""
+        numbers = estimate_json.numbers(self.estimate)
+        return {"key": self.key, "label": self.label} | numbers | {"unit": self.unit}
+
+
+def headlines(findings: Findings, answer: Answer) -> Iterator[Headline]:
+    """Yield the numbers of a card, in the order in which they are shown.
+
+    Parameters
+    ----------
+    findings : Findings
+    answer : Answer
+    """
+    if answer.regimes_first:
+        for regime in answer.main_regimes[:MOST_REGIMES]:
+            key = key_of("regimes", regime.predicate, "share", verb="answer")
+            yield Headline(key, regime.predicate, regime.share, "1", None, leads=True)
+    lead = answer.lead
+    if lead is None:
+        return
+    events = [_of_event(lead, event) for event in lead.events if isfinite(event.share.value)]
+    bounds = [*_of_bounds(findings, lead)]
+    others = [*_of_range(findings, lead)]
+    lines = [*bounds, *others, *events] if lead.is_life else [*events, *bounds, *others]
+    for line in lines:
+        yield replace(line, leads=line.leads and not answer.regimes_first)
+
+
+def _of_event(quantity: Quantity, event: Event) -> Headline:
+    key = key_of("quantities", quantity.name, "events", event.name, "share", verb="answer")
+    label = event.predicate.removesuffix(" in magnitude").replace("exceed", "beyond")
+    label = label.removeprefix("end ").removeprefix("succeed ")
+    return Headline(key, label, event.share, "1", None, leads=not quantity.is_life)
+
+
+def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
+    """Yield the tolerance bounds, or the quantiles where there is none."""
+    promise = quantity.promise
+    if promise is None:
+        return
+    unit = findings.result.outputs[quantity.output].unit
+
+    def key(name: str) -> str:
+        return key_of("quantities", quantity.name, "promise", name, verb="answer")
+
+    covered, confidence = 100 * promise.coverage, 100 * promise.confidence
+    name = f"{covered:g}/{confidence:g} {'life' if quantity.is_life else 'bound'}"
+    bounds = {"lower": (promise.lower, -inf), "upper": (promise.upper, inf)}
+    both = isfinite(promise.lower) and isfinite(promise.upper)
+    for side, (bound, towards) in bounds.items():
+        if isfinite(bound):
+            label = name.replace(" ", f" {side} ") if both else name
+            does = _does(promise, side)
+            note = f"{covered:g} % {does}; {confidence:g} % confidence (sampling)"
+            estimate, leads = Estimate(bound), quantity.is_life or not quantity.events
+            yield Headline(key(side), label, estimate, unit, promise.unit, towards, note, leads)
+    if isfinite(promise.lower) or isfinite(promise.upper):
+        return
+    quantiles = zip(promise.probabilities, promise.quantiles, bounds, strict=True)
+    for p, estimate, side in quantiles:
+        if isfinite(estimate.value):
+            yield Headline(
+                key(f"{side}_quantile"),
+                f"{100 * p:g} % quantile",
+                estimate,
+                unit,
+                promise.unit,
+                leads=quantity.is_life or not quantity.events,
+            )
+
+
+def _does(promise: ToleranceBound, side: str) -> str:
+    """Return what values do that are on the right side of a bound."""
+    if promise.of_magnitude:
+        return "within it"
+    if promise.is_life:
+        return f"{promise.ends} by then" if side == "upper" else "outlast it"
+    return "below it" if side == "upper" else "exceed it"
+
+
+def _of_range(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
+    likely = quantity.range
+    if likely is None:
+        return
+    unit, shown = findings.result.outputs[quantity.output].unit, likely.unit
+
+    def key(name: str) -> str:
+        return key_of("quantities", quantity.name, "range", name, verb="answer")
+
+    if isfinite(likely.median.value):
+        label = "median magnitude" if likely.of_magnitude else "median"
+        yield Headline(key("median"), label, likely.median, unit, shown)
+    for life in quantity.b_lives:
+        if life.key[-1] == "B10" and isfinite(life.estimate.value):
+            path = key_of("outputs", quantity.name, *life.key)
+            yield Headline(path, "B10", life.estimate, unit, shown)
+    low, high = likely.low.value, likely.high.value
+    if isfinite(low) and isfinite(high):
+        yield Headline(key("low"), "90 % between", Estimate(nan, low, high), unit, shown)
+    if likely.never.value > 0:
+        verb = "never end" if likely.ends == "end" else f"never {likely.ends}"
+        yield Headline(key("never"), verb, likely.never, "1", None)
+    described = findings.summary.outputs.get(quantity.name) if likely.of_magnitude else None
+    mean = None if described is None else described.find("mean")
+    if mean is not None:
+        path = key_of("outputs", quantity.name, "mean")
+        yield Headline(path, "signed mean", mean.estimate, unit, shown)

@@ -1,0 +1,372 @@
+"""The card of a result as lines of 80 columns, in a terminal and in a notebook."""
+
+import re
+from collections.abc import Iterator, Sequence
+from math import isnan
+from textwrap import wrap
+from typing import NamedTuple
+
+from markupsafe import Markup
+
+from uq.assess.answer.tolerance_effects import TighterTolerance
+from uq.assess.answer.wording import DisplayUnit, called_together
+from uq.assess.card import Card, Cause, card_of, statistic_name
+from uq.assess.card_numbers import Headline
+from uq.assess.findings import Findings
+from uq.result.result import AnyResult, Result
+from uq.text.numbers import TO_THESE_DIGITS, grouped, percent, percent_interval, printed
+from uq.text.units import beside
+
+WIDTH = 80
+SHORT = 12
+"""A card with no more lines has no blank ones and no headers of columns."""
+
+_COMMANDS = "--explain  --full  --json"
+_POINTS = "percentage points"
+_BRIEF = {"seconds": "s", "minutes": "min", "hours": "h"}
+_MOST = 24  # lines
+_LAW = 22  # characters of a halved scatter with its unit
+_LONG = 5  # characters of a unit that stands in the header alone
+
+
+class Line(NamedTuple):
+    """A line of a card.
+
+    Attributes
+    ----------
+    text : str
+    bold : tuple of int
+        First and last place of the part that counts; (0, 0) for none.
+    warns : bool
+        Whether it says how assumptions limit the numbers.
+    """
+
+    text: str
+    bold: tuple[int, int] = (0, 0)
+    warns: bool = False
+
+
+class ShownCard:
+    """The card of a result: its text is the card, and a notebook shows it.
+
+    Attributes
+    ----------
+    card : Card
+        Its numbers.
+    """
+
+    def __init__(self, card: Card):
+        self.card = card
+
+    def __str__(self) -> str:
+        """Return the card as text."""
+        return "\n".join(line.text for line in lines_of(self.card))
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        """Return the card as a notebook shows it."""
+        return str(Markup("<pre>{}</pre>").format(html_of(self.card)))
+
+
+def card(result: AnyResult) -> ShownCard:
+    """Return the answer of a result on one screen.
+
+    Parameters
+    ----------
+    result : path, xarray.Dataset or Result
+
+    Returns
+    -------
+    ShownCard
+        ``str`` gives at most 24 lines of 80 columns; ``card.json`` the numbers.
+
+    Raises
+    ------
+    InputError
+        If the result cannot be read.
+    """
+    return ShownCard(card_of(Findings(Result.of(result))))
+
+
+def html_of(card: Card) -> Markup:
+    """Return the lines of a card with what counts in bold."""
+    lines = []
+    for line in lines_of(card):
+        first, last = line.bold
+        text = line.text
+        parts = text[:first], Markup("<b>{}</b>").format(text[first:last]), text[last:]
+        lines.append(Markup("{}{}{}").format(*parts) if last else Markup.escape(text))
+    return Markup("\n").join(lines)
+
+
+def lines_of(card: Card) -> list[Line]:
+    """Return the lines of a card: at most 24 of 80 columns."""
+    short = [line for block in _blocks(card, is_short=True) for line in block]
+    if len(short) <= SHORT:
+        return _with_commands(short)
+    blocks = [block for block in _blocks(card, is_short=False) if block]
+    lines = [line for block in blocks for line in (Line(""), *block)][1:]
+    return _with_commands(lines)
+
+
+def _blocks(card: Card, *, is_short: bool) -> list[list[Line]]:
+    leading = [line for line in card.headline if line.leads]
+    others = [line for line in card.headline if not line.leads]
+    warning = [*_warning(card)]
+    main = [*_headlines(leading, card), *warning]
+    table = [*_headlines(others, card)]
+    if any(line.estimate.has_interval for line in others) and not is_short:
+        label, value = _widths(card)
+        table.insert(0, Line(f"  {'':<{label}}{'estimate':>{value}}    95 % interval"))
+    if card.besides and table:
+        table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
+    assumed = [] if warning or not card.assumptions else _labelled("!", (card.assumptions,))
+    causes = [*_causes(card, is_short=is_short)]
+    return [
+        [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],
+        *([causes, main, table] if card.indices_first else [main, table, causes]),
+        [
+            *_labelled("CHECKS", card.checks),
+            *(line._replace(warns=True) for line in assumed),
+            *_labelled("NEXT", _fitting(card.next)),
+        ],
+    ]
+
+
+def _title(card: Card) -> Line:
+    rows = f"{grouped(card.rows)} {card.row_name[card.rows != 1]}, {grouped(card.failed)} failed"
+    text = _beside(f"{card.name}   {rows}", f"{card.model}, {card.design}")
+    return Line(text, (0, len(card.name)))
+
+
+def _with_commands(lines: list[Line]) -> list[Line]:
+    last = lines[-1]
+    with_commands = _beside(last.text, _COMMANDS)
+    if with_commands == last.text and SHORT < len(lines) < _MOST:
+        return [*lines, Line(f"{_COMMANDS:>{WIDTH}}")]
+    return [*lines[:-1], last._replace(text=with_commands)]
+
+
+def _beside(left: str, right: str) -> str:
+    """Return two texts at both margins of a line; the right one only if it fits."""
+    gap = WIDTH - len(left) - len(right)
+    return f"{left}{' ' * gap}{right}" if gap > 1 else left
+
+
+def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
+    wide_label, wide_value = _widths(card)
+    for line in lines:
+        label, value = _label(line, card), _shown(line)
+        if isnan(line.estimate.value):
+            yield Line(f"  {label:<{wide_label}}{'':<{wide_value // 4}}{value}")
+            continue
+        start = f"  {label:<{wide_label}}{value:>{wide_value}}"
+        text = f"{start}    {printed(line.note or _interval(line))}".rstrip()
+        place = (len(start) - len(value), len(start)) if line.leads else (0, 0)
+        if len(text) <= WIDTH:
+            yield Line(text, place)
+            continue
+        first, _, second = text.partition("; ")
+        yield Line(f"{first};", place)
+        yield Line(f"{'':<{len(start) + 4}}{second}")
+
+
+def _widths(card: Card) -> tuple[int, int]:
+    """Return the widths of labels and of values."""
+    labels = [len(_label(line, card)) for line in card.headline]
+    values = [len(_shown(line)) for line in card.headline if not isnan(line.estimate.value)]
+    return max([17, *labels]) + 2, max([10, *values])
+
+
+def _label(line: Headline, card: Card) -> str:
+    is_range = isnan(line.estimate.value)
+    return printed(f"90 % of {card.row_name[1]}" if is_range else line.label)
+
+
+def _shown(line: Headline) -> str:
+    """Return the number with its unit; of a range, both ends."""
+    estimate = line.estimate
+    if line.shown is None:
+        return printed(percent(estimate.value))
+    unit = _brief(line.shown)
+    if isnan(estimate.value):
+        return printed(unit.between(estimate.low, estimate.high))
+    return printed(unit.text(estimate.value, line.towards))
+
+
+def _interval(line: Headline) -> str:
+    unit, low, high = line.shown, line.estimate.low, line.estimate.high
+    if not line.estimate.has_interval:
+        return ""
+    if unit is None:
+        return percent_interval(low, high)
+    _, low_text, high_text = _same_decimals(*map(unit.number, line.estimate.numbers))
+    return TO_THESE_DIGITS if low_text == high_text else f"{low_text} to {high_text}"
+
+
+def _brief(unit: DisplayUnit) -> DisplayUnit:
+    """Return a unit with the symbols of times in place of words."""
+    return unit._replace(name=_BRIEF.get(unit.name, unit.name))
+
+
+def _warning(card: Card) -> Iterator[Line]:
+    if card.warning:
+        clauses = filter(None, (card.warning, card.assumptions.partition(",")[0]))
+        yield from (line._replace(warns=True) for line in _labelled("!", ("; ".join(clauses),)))
+
+
+def _causes(card: Card, *, is_short: bool) -> Iterator[Line]:
+    if card.no_causes:
+        is_stated = "not settled" in card.no_causes
+        reason = card.no_causes if is_stated else f"not settled: {card.no_causes}"
+        yield from _labelled("CAUSES", (reason,))
+    if not card.causes:
+        return
+    header, rows = _cause_columns(card)
+    filled = [i for i, column in enumerate(zip(*rows, strict=True)) if any(column)]
+    header = [header[i] for i in filled]
+    rows = [[row[i] for i in filled] for row in rows]
+    columns = [*zip(*rows, strict=True)]
+    widths = [max(map(len, (*pair, *column))) for pair, column in zip(header, columns, strict=True)]
+    room = WIDTH - 2 - 2 * (len(widths) - 1)
+    if is_short:
+        for i in range(len(header) - 1, -1, -1):
+            wide = len(" ".join(header[i]))
+            if sum(widths) - widths[i] + max(wide, widths[i]) <= room:
+                header[i], widths[i] = (" ".join(header[i]), ""), max(wide, widths[i])
+        header = [(upper, "") for upper, _ in header]
+    for place, least in ((2, 22), (0, 16), (2, 12)):
+        if place < len(widths) - 1:
+            too_wide = max(sum(widths) - room, 0)
+            widths[place] -= min(too_wide, max(widths[place] - least, 0))
+    lines = [[pair[0] for pair in header], [pair[1] for pair in header], *rows]
+    for cells in lines:
+        parts = [f"{_cut(cell, width):<{width}}" for cell, width in zip(cells, widths, strict=True)]
+        if line := "  ".join(parts).rstrip():
+            yield Line(f"  {line}"[:WIDTH], (2, 8) if cells is lines[0] else (0, 0))
+
+
+def _cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
+    """Return two lines of header, by column, and the cells of each cause."""
+    steps = {cause.effect.step for cause in card.causes if cause.effect is not None}
+    step = steps.pop() if len(steps) == 1 else ""
+    header = [
+        ("CAUSES", ""),
+        (
+            {"ST": "total share", "S1": "share"}.get(card.index, card.index),
+            f"of {card.share_of}" if card.share_of else "",
+        ),
+        (f"{step} more", "changes it") if step else ("scatter halved", "(now)"),
+        ("", ""),
+    ]
+    tolerances = [cause.tightened for cause in card.causes if cause.tightened is not None]
+    if tolerances:
+        first = tolerances[0]
+        name, now = printed(statistic_name(first)), printed(_value(first, first.before.value))
+        header[3] = (f"{name}, half scatter" if step else name, f"(now {now})")
+    rows = [
+        [
+            called_together(cause.contribution.inputs).removeprefix("both "),
+            _share(cause),
+            _effect(cause) if step else _law(cause),
+            printed(_tightened(cause)),
+        ]
+        for cause in card.causes
+    ]
+    return header, rows
+
+
+def _share(cause: Cause) -> str:
+    contribution = cause.contribution
+    if not contribution.share_of_variance:
+        return contribution.size_of(contribution.indices[0]).partition(" (")[0]
+    if len(contribution.indices) > 2:
+        return f"{100 * max(contribution.value, 0):.0f} % each"
+    shares = (f"{100 * max(index.value, 0):.0f}" for index in contribution.indices)
+    return f"{' + '.join(shares)} %"
+
+
+def _law(cause: Cause) -> str:
+    """Return the halved scatter, and that of now in brackets; without the unit if it is long."""
+    if cause.tightened is None:
+        return ""
+    if ";" in cause.tightened.law:
+        return "each input"
+    then, _, now = cause.tightened.law.partition(" instead of ")
+    words = then.split()
+    if len(f"{then} ({now})") > _LAW:
+        while len(words) > 1 and not words[-1].lstrip("-")[:1].isdigit():
+            words.pop()
+    return printed(f"{' '.join(words)} ({now})")
+
+
+def _effect(cause: Cause) -> str:
+    effect = cause.effect
+    if effect is None or effect.direction == 0:
+        return ""
+    sign = "+" if effect.direction > 0 else "-"
+    if not effect.step or not effect.by.has_interval:
+        return sign
+    return printed(f"{sign}{effect.unit.text(abs(effect.by.value))}").replace(_POINTS, "points")
+
+
+def _value(tolerance: TighterTolerance, value: float) -> str:
+    return percent(value) if tolerance.is_share else _brief(tolerance.unit).text(value)
+
+
+def _tightened(cause: Cause) -> str:
+    tolerance = cause.tightened
+    if tolerance is None:
+        return ""
+    after, unit = tolerance.after, _brief(tolerance.unit)
+    if tolerance.is_share:
+        text = percent(after.value)
+        between = percent_interval(after.low, after.high).removesuffix(" %")
+    else:
+        text, low, high = _same_decimals(*map(unit.number, after.numbers))
+        text = beside(text, unit.name) if len(unit.name) <= _LONG else text
+        between = f"{low} to {high}"
+    return f"{text} ({between})" if after.has_interval else text
+
+
+def _cut(text: str, width: int) -> str:
+    return text if len(text) <= width else f"{text[: width - 1]}…"
+
+
+def _fitting(clauses: Sequence[str]) -> tuple[str, ...]:
+    """Return as many clauses as fit beside the commands, at least the first."""
+    room = WIDTH - len(_COMMANDS) - 12
+    both = "; ".join(clauses[:2])
+    return tuple(clauses[:2] if len(printed(both)) <= room else clauses[:1])
+
+
+def _labelled(label: str, clauses: Sequence[str]) -> list[Line]:
+    """Return clauses after a label, on at most two lines: as many as fit, at least the first."""
+    if not clauses:
+        return []
+    width = 8 if len(label) > 1 else 2
+    for count in range(len(clauses), 0, -1):
+        first, *others = wrap(printed("; ".join(clauses[:count])), WIDTH - width - 2)
+        if len(others) < 2:
+            break
+    others = others[:1]
+    lines = [f"  {label:<{width}}{first}", *(f"  {'':<{width}}{other}" for other in others)]
+    places = [(2, width) if len(label) > 1 else (0, 0), *((0, 0) for _ in others)]
+    return [*map(Line, lines, places)]
+
+
+def _same_decimals(*numbers: str) -> list[str]:
+    """Return numbers with as many decimals as that which has most, but no more than three digits.
+
+    As given if one is written with a power of ten.
+    """
+    if not all(re.fullmatch(r"-?\d+(\.\d+)?", number) for number in numbers):
+        return [*numbers]
+    most = max(len(number.partition(".")[2]) for number in numbers)
+    padded = [f"{float(number):.{most}f}" for number in numbers]
+    digits = [len(number.lstrip("-").replace(".", "").lstrip("0")) for number in padded]
+    return [
+        long if count <= 3 else number
+        for long, count, number in zip(padded, digits, numbers, strict=True)
+    ]
