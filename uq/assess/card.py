@@ -146,7 +146,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
     no_causes = ""
     if ranking is not None and not causes:
         no_causes = ranking.reason or "no input contributes measurably"
-    singular, _, plural = str(attrs.get("row_name", "run runs")).partition(" ")
+    singular, _, plural = str(attrs.get("row_name", "run/runs")).partition("/")
     return Card(
         result.study.study.name,
         str(attrs["title"]),

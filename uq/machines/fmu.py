@@ -68,7 +68,8 @@ def fmu_of(path: Path) -> Model:
     runner = _Fmu(fmu, stamp_of(fmu), inputs, outputs, returned, times, folders)
     batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep, False)
     title = machine.title or description.description or description.modelName
-    return model_from(machine.name, title, machine.version, fields, returned, batch, False)
+    about = machine.name, title, machine.version
+    return model_from(*about, fields, returned, batch, False, machine.row_name)
 
 
 def code_of_fmu(path: Path) -> str:

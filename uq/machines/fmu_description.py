@@ -19,6 +19,7 @@ from pydantic import Field, model_validator
 from uq.errors import InputError, described
 from uq.files.whole_files import file_there
 from uq.machines.machine_file import MachineName, Name, TomlTable
+from uq.machines.row_by_row import ROW_NAME
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -30,6 +31,7 @@ class FmuTable(TomlTable):
     fmu: Annotated[str, Field(min_length=1, description="file, beside this one")]
     title: str = ""
     version: str = "1"
+    row_name: Annotated[list[str], Field(description="singular and plural of a row")] = [*ROW_NAME]
     stop: Annotated[Positive | None, Field(description="end of the simulation [s]")] = None
     step: Annotated[Positive | None, Field(description="time between values [s]")] = None
 

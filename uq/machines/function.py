@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Model, Parameter
 from uq.errors import InputError
 from uq.machines.returned import Returned, read_returns
-from uq.machines.row_by_row import SEED, Fields, RowByRow, model_from
+from uq.machines.row_by_row import ROW_NAME, SEED, Fields, RowByRow, model_from
 
 
 def is_compiled(function: Callable[..., Any]) -> bool:
@@ -155,7 +155,11 @@ F = TypeVar("F", bound=Callable[..., Any])
 def machine(function: F) -> F: ...
 @overload
 def machine(
-    *, returns: Mapping[str, Returned | str] | None = None, title: str = "", version: str = "1"
+    *,
+    returns: Mapping[str, Returned | str] | None = None,
+    title: str = "",
+    version: str = "1",
+    row_name: tuple[str, str] = ROW_NAME,
 ) -> Callable[[F], F]: ...
 def machine(
     function: Any = None,
@@ -163,6 +167,7 @@ def machine(
     returns: Mapping[str, Returned | str] | None = None,
     title: str = "",
     version: str = "1",
+    row_name: tuple[str, str] = ROW_NAME,
 ) -> Any:
     """Make a plain function a machine that studies can run.
 
@@ -182,6 +187,8 @@ def machine(
     version : str
         To be changed whenever the same input may give different numbers for reasons that are not
         in its source.
+    row_name : tuple of str
+        Singular and plural of what a row represents, as cards name it: ``("pump", "pumps")``.
 
     Returns
     -------
@@ -208,7 +215,7 @@ def machine(
             )
         if kind := next((word for test, word in _UNFIT if test(function)), ""):
             raise InputError(f"machine '{plain.__name__}': {kind}")
-        setattr(function, _MARK, (returns, title, version))
+        setattr(function, _MARK, (returns, title, version, row_name))
         return function
 
     return mark if function is None else mark(function)
@@ -233,7 +240,7 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     InputError
         When its arguments or declarations cannot be used.
     """
-    returns, title, version = getattr(function, _MARK)
+    returns, title, version, row_name = getattr(function, _MARK)
     plain = _plain(function)
     name = plain.__name__
     label = f"machine '{name}'"
@@ -242,7 +249,7 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     title = title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
     kind = Compiled if is_compiled(function) else RowByRow
     batch = kind(function, tuple(fields), outputs, wants_seed)
-    return model_from(name, title, version, fields, outputs, batch, wants_seed)
+    return model_from(name, title, version, fields, outputs, batch, wants_seed, row_name)
 
 
 def _plain(function: Callable[..., Any]) -> Callable[..., Any]:

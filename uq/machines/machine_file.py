@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from uq.errors import InputError, nearest, one_line
 from uq.files.whole_files import file_there, node
-from uq.machines.row_by_row import SEED
+from uq.machines.row_by_row import ROW_NAME, SEED
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
 
@@ -114,6 +114,7 @@ class MachineTable(TomlTable):
     command: Annotated[list[str], Field(min_length=1, description="program and arguments")]
     title: str = ""
     version: str = "1"
+    row_name: Annotated[list[str], Field(description="singular and plural of a row")] = [*ROW_NAME]
     template: Annotated[str, Field(description="file whose {places} are filled")] = ""
     input: Annotated[str, Field(description="name of the filled template")] = "input.txt"
     files: Annotated[list[str], Field(description="what else counts as its code")] = []

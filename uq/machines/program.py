@@ -77,7 +77,8 @@ def program_of(path: Path) -> Model:
     random = _takes_seed(machine, folder)
     batch = RowByRow(runner, tuple(inputs), returned, True, folders.leave, folders.keep)
     title = machine.title or machine.name
-    return model_from(machine.name, title, machine.version, inputs, returned, batch, random)
+    about = machine.name, title, machine.version
+    return model_from(*about, inputs, returned, batch, random, machine.row_name)
 
 
 def code_of_program(path: Path) -> str:

@@ -177,7 +177,7 @@ def model_attributes(model: Model) -> dict[str, Any]:
         "source": f"{model.name} {model.version}",
         "model": model.name,
         "model_version": model.version,
-        "row_name": " ".join(model.row_name),
+        "row_name": "/".join(model.row_name),
     }
 
 

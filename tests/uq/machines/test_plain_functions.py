@@ -140,7 +140,7 @@ def wear(load: float = {nominal}):
 
 @pytest.mark.slow
 def test_a_nominal_row_that_hangs_is_one_line(uq, write_function, monkeypatch):
-    monkeypatch.setattr(loading, "FIRST_SECONDS", 0.0)
+    monkeypatch.setattr(child, "FIRST_SECONDS", 0.0)
     monkeypatch.setattr(loading, "_SLOW", 0.5)
     file = write_function(SLOW_TO_LEARN.format(nominal=2.0))
     ended = uq("run", "own.toml", "--model", file, "--row-limit", "1")
@@ -153,7 +153,6 @@ def test_a_nominal_row_that_hangs_is_one_line(uq, write_function, monkeypatch):
 def test_a_row_that_hangs_while_it_is_seen_what_is_returned_costs_that_row_only(
     uq, write_function, monkeypatch
 ):
-    monkeypatch.setattr(loading, "FIRST_SECONDS", 0.0)
     monkeypatch.setattr(child, "FIRST_SECONDS", 0.5)
     file = write_function(SLOW_TO_LEARN.format(nominal=1.0))
     ended = uq("run", "own.toml", "--model", file, "--row-limit", "0.5", "--samples", "6")
@@ -207,3 +206,27 @@ def test_a_new_machine_passes_as_it_is_written(uq, folder):
     assert subprocess.run(tests, cwd=folder / name, stdout=subprocess.DEVNULL).returncode == 0
     assert "exists already" in uq("init", "--machine", name).err
     assert "another module" in uq("init", "--machine", "random").err
+
+
+@pytest.mark.parametrize(
+    ("names", "first"), [("", "8 runs, 0 failed"), ('("test pad", "test pads")', "8 test pads, 0")]
+)
+def test_a_card_calls_rows_what_the_machine_calls_them(uq, write_function, names, first):
+    options = f"(row_name={names})" if names else ""
+    file = write_function(
+        f"import uq\n@uq.machine{options}\ndef pad(load: float = 1.5): return {{'life': load}}\n"
+    )
+    ended = uq("run", "own.toml", "--model", file, "-o", "own.nc", "--workers", 0, "--samples", 8)
+    assert first in ended.out
+
+
+@pytest.mark.parametrize(
+    "names", ["('pad',)", "'pad'", "('pad', 3)", "('pad', '')", "('a/b', 'c')"]
+)
+def test_names_of_a_row_that_are_no_words_are_refused(uq, write_function, names):
+    file = write_function(
+        f"import uq\n@uq.machine(row_name={names})\ndef pad(x: float = 1.0): return {{'life': x}}\n"
+    )
+    ended = uq("check", "own.toml", "--model", file)
+    assert ended.code == 2
+    assert "row_name" in ended.err and "a singular and a plural" in ended.err
