@@ -117,7 +117,8 @@ def _uncertain(model: Model, laws: dict[str, Law]) -> Iterator[str]:
         yield f"[uncertain.{name}]"
         yield _about(model.parameter(name))
         for key, value in law.model_dump(exclude={"source"}, exclude_none=True).items():
-            yield f"{key} = {toml(value)}"
+            if key != "level" or value != Law.model_fields["level"].default:
+                yield f"{key} = {toml(value)}"
         yield f"source = {toml(law.source)}"
         yield ""
 
