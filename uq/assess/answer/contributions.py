@@ -20,7 +20,7 @@ SMALL = 0.05
 """A smaller share of the variance does not lead."""
 
 EXPANSION = "hdmr"
-"""The method that finds total indices in a plain sample."""
+"""The method that estimates total indices from a plain sample."""
 
 
 @dataclass(frozen=True)
@@ -88,13 +88,13 @@ class Contribution:
     Attributes
     ----------
     inputs : tuple of str
-        One; or several whose indices do not distinguish them, or twins.
+        One input, or several that are twins or have indistinguishable indices.
     indices : tuple of Estimate
-        Of each.
+        Index of each input.
     share_of_variance : bool
-        Whether an index is one.
+        Whether an index is a share of the variance.
     changes : tuple of AverageEffect
-        Of each; empty where they are not known.
+        Effect of each input; empty if not estimated.
     unit : DisplayUnit
         Of an index in the unit of the output.
     doubtful : tuple of str
@@ -180,17 +180,17 @@ class Ranking:
     index_meaning : str
         Meaning of the index, such as a share of the variance.
     contributions : tuple of Contribution
-        The largest first; only those that exceed inputs without effect.
+        The largest first; only inputs whose index exceeds that of inputs without effect.
     reason : str
-        Reason for a missing ranking: no index, or nothing settled; "" otherwise.
+        Reason for a missing ranking: no index, or none settled; "" otherwise.
     rows_factor : float
         Factor on the sample size that would settle it; NaN if not applicable.
     is_flat : bool
         Whether it is settled that no input contributes measurably.
     rivals : tuple of str
-        Inputs one of which would lead with another seed, with 95 %; none if unknown.
+        Inputs that may lead in a repeat with another seed, at 95 % confidence; none if unknown.
     share_of : str
-        The variance that an index is a share of: ``its variance``; "" of other indices and of
+        The variance that an index is a share of: ``the variance``; "" of other indices and of
         events.
     unexplained : Estimate
         Share of the variance that no single input explains, where inputs are ranked by first-order
@@ -223,7 +223,7 @@ class Ranking:
         notes: tuple[str, ...] = ()
         if result is not None and result.is_nested:
             used = grouped(len(result.first_rows))
-            notes = (f"the index rests on {used} of these rows, the first of each sample",)
+            notes = (f"the index uses {used} of these rows, the first of each sample",)
         members: dict[str, Any] = {
             "sentence": self.sentence,
             "target": self.target,
@@ -271,7 +271,8 @@ class Ranking:
     def may_be_overturned(self) -> bool:
         """Return whether another input may contribute more, with interactions, than the leader.
 
-        A total index is at most the index alone and all that no single input explains.
+        A total index is at most the first-order index plus the variance that no single input
+        explains.
         """
         if self.leader is None or isnan(self.unexplained.value):
             return False
@@ -308,12 +309,12 @@ class Ranking:
         """Share that no single input explains, if it could change the order; else ""."""
         if not self.may_be_overturned or self.of_event:
             return ""
-        text = f"No single input explains {whole_percent(self.unexplained)}"
+        text = f"Single inputs leave {whole_percent(self.unexplained)} unexplained"
         if not self.totals:
             return f"{text}: interactions could change the order; {self.remedy}."
         first = [(name, total) for name, total in self.totals.items()][:2]
         named = joined([f"{called(name)} {100 * min(total, 1.0):.0f} %" for name, total in first])
-        return f"{text}; with interactions (HDMR), the largest contributions are those of {named}."
+        return f"{text}; the largest total contributions, with interactions, are {named} (HDMR)."
 
     @property
     def _of(self) -> str:

@@ -32,7 +32,7 @@ class Event:
     name : str
         The target, such as ``P(life<86400.0)``.
     predicate : str
-        What the rows do: ``end within 24 hours``, ``exceed 12 degrees in magnitude``.
+        The event in words: ``fail within 24 hours``, ``exceed 12 degrees in magnitude``.
     share : Estimate
     failed : Estimate or None
         Bounds with the failed rows at best and at worst, where rows failed.
@@ -45,13 +45,14 @@ class Event:
     over_unit : DisplayUnit
         Of that input.
     undefined : float
-        Share of the rows in which the output is undefined, so that neither side holds.
+        Share of the rows in which the output is undefined, on neither side of the threshold.
     is_of_single : bool
-        Whether a level without the leading input decides more than it.
+        Whether a level without the leading input explains more than it.
     limit : Limit or None
-        Of that input, where its unwanted side is rare on average; None where no side is unwanted.
+        Range of that input in which the unwanted side is rare on average; None if no side is
+        unwanted.
     by : tuple of callable
-        The functions that compute its probability.
+        The functions that compute the probability.
     """
 
     name: str
@@ -68,7 +69,7 @@ class Event:
     by: Functions = ()
 
     def fact(self, result: Result | None = None) -> Fact:
-        """Return the event with its numbers; its words say what decides it."""
+        """Return the event with its numbers; its sentence names the main driver."""
         share = {"sentence": self.sentence} | estimate_json.whole(self.share)
         share |= estimate_json.failed(self.failed) | {"undefined": self.undefined}
         rows = None if result is None else result.independent
@@ -97,11 +98,11 @@ class Event:
         """Its probability, or the reason why it is unknown."""
         if isnan(self.share.value):
             why = self.share.reason
-            return sentence(f"how many {self.clause} is not known: {why}") if why else ""
+            return f"The share that {self.clause} cannot be estimated: {why}." if why else ""
         text = f"{share_text(self.share)} {self.predicate}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_range(self.failed.low, self.failed.high)
-            text += f"; with failed rows {ends}"
+            text += f"; with failed rows at best and worst, {ends}"
         if self.undefined > 0:
             text += f"; {percent(self.undefined)} are undefined"
         return f"{text}."
@@ -118,9 +119,11 @@ class Event:
 
     @property
     def named_cause(self) -> str:
-        """Its main driver, after its name."""
+        """Its name and its main driver."""
         cause = self.decided_by
-        return f"{capitalized(self.predicate)}: {cause[:1].lower()}{cause[1:]}" if cause else ""
+        after = ", " if cause.startswith("Main ") else ": "
+        words = capitalized(self.predicate)
+        return f"{words}{after}{cause[:1].lower()}{cause[1:]}" if cause else ""
 
     @property
     def limited(self) -> str:
@@ -143,19 +146,19 @@ class Event:
         leader = self.ranking.leader
         if leader is None:
             return self.ranking.sentence if self.ranking.reason else ""
-        text = f"decided most by {leader.words}"
-        if self.is_of_single or self.ranking.may_be_overturned:
-            text = f"of single inputs, decided most by {leader.words}"
+        single = " single input" * (self.is_of_single or self.ranking.may_be_overturned)
+        plural = "s" * (len(leader.inputs) > 1)
+        text = f"Main{single or ' driver'}{plural}: {leader.words}"
         if leader.share_of_variance and len(leader.inputs) == 1 and leader.value < MINOR:
-            text += f", though it alone explains only {leader.size}"
-        if self.curve is not None:
-            places = [self.curve.least, self.curve.most]
-            first, last = (
-                f"{percent(self.curve.shares[i].value)} where it is {self.part(i)}" for i in places
-            )
-            over = f" over {called_together([self.over])}" if len(leader.inputs) > 1 else ""
-            text += f":{over} from {first} to {last}"
-        return sentence(text)
+            text += f", although it alone explains only {leader.size}"
+        if self.curve is None:
+            return f"{text}."
+        least, most = (
+            f"{percent(self.curve.shares[i].value)} {self.part(i)}"
+            for i in (self.curve.least, self.curve.most)
+        )
+        over = called_together([self.over])
+        return f"{text}. Over {over}, the share ranges from {least} to {most}."
 
     def part(self, i: int) -> str:
         """Return a part of the input that the curve is over, with neighbours alike, in words."""
@@ -188,13 +191,13 @@ class Quantity:
     events : tuple of Event
     ranking : Ranking or None
     wanted : {"above", "below", ""}
-        The side of its values that is wanted; "" where that is not known, and for lives.
+        The wanted side of its values; "" if not stated, and for lives.
     earliest : Earliest or None
-        Of a life that does not end with a success: which rows end first, and why.
+        The rows that fail first and what distinguishes them, unless the life ends with a success.
     scaled_by : tuple of str
-        Quantities whose values are assumed and to which all its lives are proportional.
+        Assumed quantities to which all its lives, or their reciprocals, are proportional.
     own_error : Fact or None
-        Effect of the stated errors of the rows on the promise.
+        Effect of the numerical errors of the rows on the promise.
     b_lives : tuple of Statistic
         Of a life.
     """
@@ -241,8 +244,8 @@ class Quantity:
         if not self.scaled_by:
             return sentence(self.words)
         are = "are" if len(self.scaled_by) > 1 else "is"
-        named = called_together(self.scaled_by)
-        return f"{sentence(self.words)} Its scale is that of {named}, which {are} assumed."
+        assumed = f"{capitalized(called_together(self.scaled_by))} {are} assumed"
+        return f"{sentence(self.words)} {assumed}: only relative lives are meaningful."
 
     @property
     def is_life(self) -> bool:

@@ -288,7 +288,7 @@ def event(findings: Findings, target: str, predicate: str, statistic: Statistic)
     except InputError as refused:
         why = str(refused)
         if not split_name(target)[2]:  # a regime that does not occur in the ranked rows
-            why = f"no ranking of the inputs: no row that it could rest on is {predicate}"
+            why = f"no ranking of the inputs: none of the ranked rows is {predicate}"
         return replace(outcome, ranking=Ranking(target, method, reason=why))
     outcome = replace(outcome, ranking=ranking)
     if ranking.leader is None:

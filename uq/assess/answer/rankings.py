@@ -27,7 +27,7 @@ from uq.stats.estimate import Estimate
 from uq.study.file import Tied
 
 GOAL = 0.1
-"""Half-width of the interval of an index, of the largest if it has a unit, at which it is known."""
+"""Half-width at which an index is settled; relative to the largest index if it has a unit."""
 
 MOST_TIED = 3
 """With more indistinguishable inputs than this, there is no ranking."""
@@ -88,7 +88,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         if needed > 1:
             factor = max(factor, needed)
         return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)
-    # What does not exceed inputs without effect may yet contribute as much as the first.
+    # An index that does not exceed the limit without effect may still equal the first.
     weighed = [
         candidate for candidate in measured if candidate.counts or _are_tied(measured[0], candidate)
     ]
@@ -101,7 +101,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         reason, is_flat = f"the order of {names} is not settled", False
         if factor <= 1:  # the rows distinguish larger differences
             is_flat = kind.unit == "variance" and first.index.value < SMALL
-            reason, factor = _alike(names, first, kind, split_name(name)[0] == "P", is_flat), nan
+            reason, factor = _alike(names, first, kind, is_flat), nan
         return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)
     least = LEAST * _scale(measured[0], kind)
     listed = [group for group in groups if group[0].index.value >= least]
@@ -109,7 +109,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     units = {label: unit_of_input(findings.result, label) for label in moved}
     contributions = tuple(_contribution(group, kind, name, moved, verbs, units) for group in listed)
     is_share = kind.unit == "variance" and split_name(name)[0] != "P"
-    of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
+    of_what = (f"the variance of the {form}" if form else "the variance") if is_share else ""
     rivals = _rivals(measured)
     ranking = Ranking(
         name, method, kind.key, meaning, contributions, rivals=rivals, share_of=of_what
@@ -170,7 +170,7 @@ def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
 def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
     """Return the reason why no index counts, the factor on the rows, and whether none is large."""
     text = f"{kind.key} of {called(first.name)} is {first.index.value:z.2f}"
-    which = f"which inputs {'decide that' if of_event else 'matter'} is not settled"
+    which = f"the {'main driver' if of_event else 'ranking of the inputs'} is not settled"
     if not isfinite(first.half):
         return f"{which}: {text}, without an interval", nan, False
     goal = GOAL * _scale(first, kind)
@@ -180,17 +180,16 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
         ends = f"{first.index.low:z.2f} to {first.index.high:z.2f}"
         interval = f" ({ends})" if first.index.has_interval else ""
         return f"{which}: {text}{interval}", (first.half / goal) ** 2, False
-    verb = "decides that" if of_event else "contributes"
-    return f"no single input {verb} measurably: {text} at most", nan, True
+    largest = f"the largest {kind.key} is {first.index.value:z.2f} ({called(first.name)})"
+    return f"no single input contributes measurably: {largest}", nan, True
 
 
-def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat: bool) -> str:
-    """Return a clause: inputs contribute alike, or none contributes much."""
-    most = f"is {first.index.value:.2f} at most"
+def _alike(names: str, first: Measured, kind: IndexKind, is_flat: bool) -> str:
+    """Return a clause: inputs contribute about equally, or none contributes much."""
+    most = f"at most {first.index.value:.2f}"
     if is_flat:
-        does = "decides that alone" if of_event else "explains much"
-        return f"no single input {does}: {kind.key} of {names} {most}"
-    return f"{names} {'decide that' if of_event else 'contribute'} alike: {kind.key} {most}"
+        return f"no single input explains much: {kind.key} of {names} is {most}"
+    return f"{names} contribute about equally: {kind.key} is {most}"
 
 
 def _groups(result: Result, measured: list[Measured]) -> Iterator[list[Measured]]:
