@@ -1,4 +1,4 @@
-"""What a result says: statistics, lives, regimes, sensitivities, comparison, the answer.
+"""Analysis of a result: statistics, lives, regimes, sensitivities, comparison, the answer.
 
 Reading order; each part imports only those above it:
 
@@ -11,7 +11,7 @@ Reading order; each part imports only those above it:
     random_effects     distribution of the failure probability over shared inputs
     variance_by_level  one table of numbers apportioned to levels
     design_sample      the sample of a sensitivity method
-    earliest           distinguishing inputs of the rows that end first
+    earliest           distinguishing inputs of the rows that fail first
     sampled_inputs     the laws and rank correlations of the inputs
     scale_laws         conditional law of the life of each row
     counted_rows       rows that count alike, each with the value or the life that was computed
@@ -22,7 +22,7 @@ Reading order; each part imports only those above it:
     chosen_targets     targets that a user names, or that suit a method
     expected_widths    the expected width of the intervals of a study, from a few of its rows
     reweighting        the rows of a result as those of another study
-    fleets             fleets: units of one world, and how many of them have ended
+    fleets             fleets: units with shared inputs, and the number that have failed
     statistic          a statistic of an output
     sensitivities      sensitivity indices of a result, by every method
     failed_rows        bounds of an estimate with the failed rows at best and at worst

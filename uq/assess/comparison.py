@@ -1,4 +1,4 @@
-"""Two studies of one model: what was changed, and how their outputs differ."""
+"""Two studies of one model: their changes, and the differences of their outputs."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

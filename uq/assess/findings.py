@@ -1,4 +1,4 @@
-"""A result and what several tables and figures show of it, each computed once."""
+"""A result with the estimates that several tables and figures share, each computed once."""
 
 from collections.abc import Iterator
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""Fleets: units of one world, and how many of them have ended.
+"""Fleets: units with shared inputs, and the number that have failed.
 
 A world is a sample of a study: its units have the same shared inputs, and are independent given
 these. What scales the lives of units alone is integrated inside each unit; what scales those of all

@@ -1,4 +1,4 @@
-"""The rows of a result as those of another study: weighted, and laws of lives replaced."""
+"""The rows of a result under the laws of another study: importance weights and laws of lives."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
@@ -174,8 +174,8 @@ class Weighting:
             if name not in inputs and (share := share_without_rows(self._old, self._new, name)):
                 return no_weights(
                     len(self._rows),
-                    f"uncertain.{name}: has {share:.2g} of its probability where the study's law"
-                    " has none, so that no row is there; run it as a study of its own",
+                    f"uncertain.{name}: has {share:.2g} of its probability outside the study's"
+                    " law, where there are no rows; run it as a separate study",
                 )
         weights = log_ratio(len(self._rows), self._old, self._new, inputs)
         if not np.isfinite(weights.max()):

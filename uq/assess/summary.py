@@ -28,7 +28,7 @@ from uq.study.file import AnalysisTable
 
 NO_INTERVALS = (
     "no intervals: the rows of a '{design}' design are not independent, and a single replicate"
-    " does not show how far its estimates scatter; set replicates = 8"
+    " cannot show the scatter of its estimates; set replicates = 8"
 )
 
 NOT_STATED = (
@@ -36,7 +36,9 @@ NOT_STATED = (
     " the laws, set independent = true in [design]"
 )
 
-SEVERAL_ROWS = "the rows of one sample are not independent ({size}): intervals rest on samples"
+SEVERAL_ROWS = (
+    "the rows of one sample are not independent ({size}): intervals are computed from samples"
+)
 NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
 
 SOME_FAILED = (

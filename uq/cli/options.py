@@ -24,9 +24,7 @@ ModelName = Annotated[
 StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
 ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
-Plain = Annotated[
-    bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
-]
+Plain = Annotated[bool, typer.Option("--plain", help="No exact integration: lives as computed.")]
 ModelReference = Annotated[
     str | None,
     typer.Option(
@@ -51,7 +49,7 @@ Settings = Annotated[
     typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
 ]
 Mixed = Annotated[
-    bool, typer.Option("--mixed", help="Keep rows computed by other code of the model.")
+    bool, typer.Option("--mixed", help="Keep rows from another version of the model.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
 OnlyOutput = Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")]

@@ -1,4 +1,4 @@
-"""Laws of inputs and designs of points: what is uncertain, how inputs depend, which points.
+"""Laws of inputs, their dependence, and designs of points.
 
 Reading order; each part imports only those above it:
 

@@ -1,14 +1,14 @@
-"""The answer of a study: what can be promised, what decides it, and what to do.
+"""The answer of a study: tolerance bounds, main drivers, and advice.
 
 Reading order; each part imports only those above it:
 
     wording             inputs and outputs in words
     measured_indices    index of each input, and its separation from the others
     contributions       contributions of inputs
-    earliest            the rows that end first, and their distinguishing inputs
-    limits              ranges of the deciding input in which the unwanted side is rare on
+    earliest            the rows that fail first, and their distinguishing inputs
+    limits              ranges of the leading input in which the unwanted side is rare on
     tolerance_bound     tolerance bound that can be promised of an output, and its likely range
-    levels              variance components by level, and how intermingled the regimes are
+    levels              variance components by level, and the uncertainty exponent of regimes
     promised_bounds     promised bounds of an output
     repeat_interval     prediction interval
     parts               events and quantities of an answer, with their sentences

@@ -20,7 +20,7 @@ from uq.text.numbers import capitalized
 
 
 def answer(result: AnyResult) -> Answer:
-    """Say what can be promised, what it depends on, and what to do.
+    """Return the answer of a study: tolerance bounds, main drivers, and advice.
 
     Parameters
     ----------

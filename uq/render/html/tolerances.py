@@ -1,4 +1,4 @@
-"""Other tolerances: weights of rows for each stop of a slider, and what Python estimates there."""
+"""Other tolerances: weights of rows at each stop of a slider, and the estimates there."""
 
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
