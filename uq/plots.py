@@ -57,7 +57,7 @@ FIGURES: dict[str, Entry] = {
     "events": Entry(
         event_probability,
         subjects.decided_events,
-        "Probability that {event}, over the input that decides it",
+        "Probability that {event}, over its main driver",
     ),
     "scatter": Entry(
         scatter,

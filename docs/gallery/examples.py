@@ -118,7 +118,7 @@ EXAMPLES = (
     _of_result(
         "events",
         LIVES,
-        "The probability of an event over the input that decides it",
+        "The probability of an event over its main driver",
         "Steps are slices of equally many rows, with 95 % intervals; dashed is the probability over"
         " all rows.",
         f'event_probability(ds, "P({LIFE}<86400.0)")',

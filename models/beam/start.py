@@ -27,7 +27,7 @@ def initial_gaps(p: Rows) -> Array:
 
 
 def wear_shares(p: Rows) -> Array:
-    """Return the wear coefficient of each site over that of the right, shape (n, 2) or (2,)."""
+    """Return the wear coefficient of each site relative to the right site, shape (n, 2) or (2,)."""
     ratio = p.wear_coefficient_ratio
     return np.stack([np.ones_like(ratio, float), ratio], axis=-1)
 

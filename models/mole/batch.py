@@ -114,7 +114,7 @@ def _ratio_error(parts: Any, denominator: Any, repeats: Any) -> Any:
 
 
 def _growth(valid: Any, repeats: Any, *maxima: Any) -> Any:
-    """Return by how much a sum of largest values may grow; maxima are given in batches."""
+    """Return a bound on the growth of a sum of largest values; maxima are given in batches."""
     error = np.where(valid, 0.0, np.nan)
     other = valid & ~repeats
     error[other] = sum(maximum_and_growth(largest[other])[1] for largest in maxima)

@@ -58,7 +58,7 @@ def ratio_error(numerators: Array, denominators: Array) -> Array:
 
 
 def _wider(count: int) -> Array:
-    """Return the factors of a standard error of which 0, 1, ... or all batches tell something."""
+    """Return the factors of a standard error for 0, 1, ... or all informative batches."""
     from scipy.special import stdtrit
 
     number = np.arange(2, count + 1)

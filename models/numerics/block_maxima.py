@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def maximum_and_growth(maxima: Array) -> tuple[Array, Array]:
-    """Return the largest values, and by how much they have grown from one block to all.
+    """Return the largest values, and their growth from one block to all.
 
     Over as many times the time as there are blocks, the largest value is expected to grow by no
     more than that.

@@ -1,4 +1,4 @@
-"""Blocks of lanes: how many systems advance at a time, and their memory."""
+"""Blocks of lanes: the number of systems that advance together, and their memory."""
 
 import numpy as np
 from numpy.typing import NDArray

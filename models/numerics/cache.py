@@ -108,7 +108,7 @@ def _files(value: Any, seen: set[int]) -> Iterator[Path]:
 
 
 def _roots(file: Path) -> set[Path]:
-    """Return the packages and modules whose functions those of a file may call."""
+    """Return the packages and modules whose functions a file may call."""
     if _is_ours(file):
         return {_MODELS / file.relative_to(_MODELS).parts[0]}
     roots = _importable(file)
@@ -152,7 +152,7 @@ def _snapshot(root: Path) -> _Snapshot:
 
 
 def _stamp(path: Path) -> tuple[int, int]:
-    """Return what an edit changes: a file's modification time and size, or zeros if it is gone."""
+    """Return a file's modification time and size, which an edit changes; zeros without a file."""
     try:
         look = os.stat(path)
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""Fused multiply-add, wherever the source says so and nowhere else.
+"""Fused multiply-add, only where the source requests it.
 
 Vectorised algebra runs up to 1.7 times as fast with it. Letting the compiler fuse at will
 (``contract``) is as fast, but then the last bits depend on what it inlines where. Written out, they

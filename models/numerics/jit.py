@@ -114,7 +114,7 @@ def inlined(function: Function) -> Function:
 
 
 def spliced(function: Function) -> Function:
-    """Copy what one kernel calls into it, before types are inferred.
+    """Inline the functions that a kernel calls, before types are inferred.
 
     The machine code of a kernel contains that of all it calls, also where it is itself only called:
     in a tower of kernels, every storey is compiled again. This one is not.

@@ -146,7 +146,7 @@ def _square(power, square):
 
 @lean
 def _span(columns, basis, part):
-    """Set `basis` to orthonormal rows that span the columns; return how many, -1 if too many."""
+    """Set `basis` to orthonormal rows that span the columns; return their number, or -1."""
     k, width = columns.shape
     first = np.inf
     for r in range(_DIRECTIONS + 1):

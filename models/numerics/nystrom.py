@@ -142,7 +142,7 @@ def weights(method: Tableau) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 @cache
 def combiner(quantities: int, slopes: int, method: Tableau) -> Callable[[int, Any], None]:
-    """Compile what follows a stage of one method.
+    """Compile the combination after a stage of one method.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Power series of many systems at a time: the sums of which Taylor's method consists.
+"""Power series of many systems at a time: the sums of Taylor's method.
 
 A series is stored as its coefficients, each for all lanes, which are next to each other. The number
 of terms is known when a sum is computed, not when it is compiled: a short loop over vectors of all

@@ -100,7 +100,7 @@ STUDY_FAULTS = [
     ),
     (
         {"uncertain": {"x3": None}, "fixed": {"x3": -5.0}},
-        f"[fixed] x3 = -5.0: must lie within {BOUNDS}",
+        f"[fixed] x3 = -5.0: must be within {BOUNDS}",
     ),
     (
         {"uncertain": {"x3": None}, "fixed": {"x3": True}},
@@ -108,11 +108,11 @@ STUDY_FAULTS = [
     ),
     (
         {"uncertain": {"x3": None}, "fixed": {"x3": nan}},
-        f"[fixed] x3 = nan: must lie within {BOUNDS}",
+        f"[fixed] x3 = nan: must be within {BOUNDS}",
     ),
     (
         {"uncertain": {"x3": None}, "fixed": {"x3": -inf}},
-        f"[fixed] x3 = -inf: must lie within {BOUNDS}",
+        f"[fixed] x3 = -inf: must be within {BOUNDS}",
     ),
     # laws
     (
@@ -155,7 +155,7 @@ STUDY_FAULTS = [
     ),
     (
         {"uncertain": {"x3": {"distribution": "normal", "mean": 4, "sd": 0.1}}},
-        f"[uncertain.x3] mean = 4.0: must lie within the parameter's bounds, {BOUNDS}",
+        f"[uncertain.x3] mean = 4.0: must be within the parameter's bounds, {BOUNDS}",
     ),
     (
         {"uncertain": {"x3": {"distribution": "normal", "mean": 0, "sd": 1}}},
@@ -166,7 +166,7 @@ STUDY_FAULTS = [
     (
         {"uncertain": {"x3": {**UNIFORM, "lower": 0, "upper": 4}}},
         f"[uncertain.x3]: has 0.21 of its probability outside the parameter's bounds, {BOUNDS}"
-        " (allowed: 1e-06); lower = 0.0 and upper = 4.0 must lie within them",
+        " (allowed: 1e-06); lower = 0.0 and upper = 4.0 must be within them",
     ),
     (
         {"uncertain": {"x1": None, "x2": None, "x3": None}},
@@ -269,9 +269,9 @@ MISTAKES = {
     "simulate beam --setting horizon=1e400": "--setting horizon=1e400: 1e400 is too large",
     "simulate linear --set x1=much": "--set x1=much: write it as NAME=VALUE with a number",
     "simulate linear --set x1=nan": "x1 = nan: ",
-    "simulate linear --set x1=inf": "x1 = inf: must lie within 0.0 to 1.0 [1]",
+    "simulate linear --set x1=inf": "x1 = inf: must be within 0.0 to 1.0 [1]",
     "simulate sample_models:MOUNTED --set mount_stiffness=1e3": (
-        "mount_stiffness = 1000.0: must lie within 10000.0 to inf [N m-1]"
+        "mount_stiffness = 1000.0: must be within 10000.0 to inf [N m-1]"
     ),
     "simulate linear --set x5=1": "x5 = 1.0: no such parameter of model 'linear'",
     "simulate linear --setting fail_how": "--setting fail_how: write it as NAME=VALUE",
@@ -317,13 +317,13 @@ SENTENCES = {
         "--fresh\n"
     ),
     "fewer": "{rows}: has rows of this study with more ({change}); ",
-    "other code": "has rows that other code of model '{model}' computed",
+    "other code": "has rows from other code of model '{model}'",
     "other code refused": (
-        "{output}: has rows that other code of model '{model}' computed, although its version is "
-        "the same; start over with uq run --fresh, or continue with --mixed\n"
+        "{output}: has rows from other code of model '{model}' with the same version; "
+        "start over with uq run --fresh, or continue with --mixed\n"
     ),
     "other code shown": (
-        "{output}: has rows that other code of model '{model}' computed; 'uq verify' compares "
+        "{output}: has rows from other code of model '{model}'; 'uq verify' compares "
         "them with the code here, 'uq run --fresh' computes all of them again\n"
     ),
     "another model": (

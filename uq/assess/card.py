@@ -12,7 +12,7 @@ from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.rankings import Ranking
 from uq.assess.answer.tightening import tightened
-from uq.assess.answer.tolerance_effects import SHARE_OF, TighterTolerance
+from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import (
     ASSUMED,
     CHOSEN,
@@ -146,7 +146,8 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
     no_causes = ""
     if ranking is not None and not causes:
         no_causes = ranking.reason or "no input contributes measurably"
-    singular, _, plural = str(attrs.get("row_name", "run/runs")).partition("/")
+    row_name = str(attrs.get("row_name", "")).split("/")
+    singular, plural = row_name if len(row_name) == 2 else ("run", "runs")
     return Card(
         result.study.study.name,
         str(attrs["title"]),
@@ -289,6 +290,5 @@ def _next(advice: Sequence[Advice]) -> Iterator[str]:
 
 def statistic_name(tolerance: TighterTolerance) -> str:
     """Return the number that a tolerance changes, in a few words."""
-    name = tolerance.statistic.removeprefix("the ")
-    event = name.removeprefix(SHARE_OF.removeprefix("the "))
-    return event.replace("exceed", "beyond").removeprefix("end ").removesuffix(" in magnitude")
+    event = tolerance.statistic.removeprefix("the ").removeprefix("share of rows that ")
+    return event.replace("exceed", "beyond").removeprefix("fail ").removesuffix(" in magnitude")

@@ -83,7 +83,7 @@ def headlines(findings: Findings, answer: Answer) -> Iterator[Headline]:
 def _of_event(quantity: Quantity, event: Event) -> Headline:
     key = key_of("quantities", quantity.name, "events", event.name, "share", verb="answer")
     label = event.predicate.removesuffix(" in magnitude").replace("exceed", "beyond")
-    label = label.removeprefix("end ").removeprefix("succeed ")
+    label = label.removeprefix("fail ").removeprefix("succeed ")
     return Headline(key, label, event.share, "1", None, leads=not quantity.is_life)
 
 
@@ -152,8 +152,7 @@ def _of_range(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
     if isfinite(low) and isfinite(high):
         yield Headline(key("low"), "90 % between", Estimate(nan, low, high), unit, shown)
     if likely.never.value > 0:
-        verb = "never end" if likely.ends == "end" else f"never {likely.ends}"
-        yield Headline(key("never"), verb, likely.never, "1", None)
+        yield Headline(key("never"), f"never {likely.ends}", likely.never, "1", None)
     described = findings.summary.outputs.get(quantity.name) if likely.of_magnitude else None
     mean = None if described is None else described.find("mean")
     if mean is not None:

@@ -39,17 +39,16 @@ def wholes(elements: Sequence[Element], every: bool = False) -> Iterator[IndexTa
     Parameters
     ----------
     elements : sequence of Element
-        All those of one output.
+        All elements of one output.
     every : bool, optional
-        Whether also those that must be asked for by name.
+        Whether to include targets that are only computed on request.
 
     Yields
     ------
     IndexTarget
-        Numbers of shape (n, e). First what stands for each element by default, in one form for
-        all: the logarithms if some have a heavy tail or are lifetimes, the ranks if some rows have
-        no logarithm, else the values. If every target is asked for, the other forms follow.
-        Nothing of an output with one element.
+        Numbers of shape (n, e). First the default form, the same for all elements: logarithms if
+        some have a heavy tail or are lifetimes, ranks if some rows have no logarithm, else the
+        values. If `every`, the other forms follow. Nothing for an output with one element.
     """
     if len(elements) < 2:
         return
@@ -59,7 +58,7 @@ def wholes(elements: Sequence[Element], every: bool = False) -> Iterator[IndexTa
     if first.is_lifetime or not usual:
         yield target
     else:
-        note = f"{_HEAVY}: these are indices of their {FORMS[usual]}s; ask for {name} for their own"
+        note = f"{_HEAVY}: indices are of the {FORMS[usual]}s; ask for {name} for the values"
         yield replace(target, notes=(*target.notes, note))
     if not every or first.is_angle:
         return
@@ -104,8 +103,8 @@ def _weights(elements: Sequence[Element], values: np.ndarray) -> tuple[str, ...]
         return ()
     most = int(variance.argmax())
     return (
-        f"[:] is all {len(elements)} elements together, each weighted by its variance, of which"
-        f" {elements[most].name} has {percent(variance[most] / variance.sum())}",
+        f"[:] combines all {len(elements)} elements, each weighted by its variance:"
+        f" {elements[most].name} contributes most, {percent(variance[most] / variance.sum())}",
     )
 
 
@@ -199,15 +198,14 @@ def chosen(
             if asked.aggregates:
                 yield from wholes(_elements(result, name))
         if not has_suitable and result.failed.all():
-            raise InputError("every row failed: there is nothing to explain")
+            raise InputError("every row failed: no index can be estimated")
         if not has_suitable and not asked.takes_numbers:
             raise InputError(
-                f"'{method}' needs an event: a category, or a time of a lifetime in"
-                " [analysis] thresholds; name that of a value with such a threshold t:"
-                " --output 'P(y > t)'"
+                f"'{method}' needs an event: a category, or a lifetime with a threshold in"
+                " [analysis]; for another value with a threshold t, use --output 'P(y > t)'"
             )
         if not has_suitable:
-            raise InputError("none of the outputs is a number: there is nothing to apportion")
+            raise InputError("no output is numeric: there is no variance to apportion")
         return
     named = [
         target
@@ -218,14 +216,16 @@ def chosen(
         output = canonical(output)
         form, inside, threshold = split_name(output)
         if is_whole(inside) and form == "P":
-            raise InputError(f"'{output}': an event is that of one element; name it instead of [:]")
+            raise InputError(
+                f"'{output}': an event concerns a single element; name that instead of [:]"
+            )
         if is_whole(inside) and not asked.aggregates:
             able = ", ".join(name for name, candidate in METHODS.items() if candidate.aggregates)
             raise InputError(
                 f"'{method}' has no index of all elements together (methods that do: {able})"
             )
         if output == inside:
-            raise InputError(f"no row has a {output}: there is nothing to apportion")
+            raise InputError(f"no row has a value of {output}: there is no variance to apportion")
         names = [target.name for target in targets_of(result, output_in(inside), every=True)]
         if form == "P" and threshold:
             events = choices(name for name in names if split_name(name)[0] == "P")

@@ -29,7 +29,7 @@ from uq.stats.intervals import by_replicate, scattered_share_interval
 from uq.stats.tails import lacks_variance
 from uq.stats.weighted_means import weighted_share
 
-ONE_REPEAT = "a single repeat does not show whether another ends in another regime; {}"
+ONE_REPEAT = "one repeat per unit cannot show switching between regimes; {}"
 
 
 def switching(
@@ -92,9 +92,9 @@ def _elsewhere(unit: NDArray[np.integer], codes: NDArray[np.integer]) -> Floats:
     return probabilities
 
 
-SHARES_OF = "these are shares of the variance of its {form}"
-NO_ERROR = "the model states no numerical error of it"
-NO_ERROR_OF = "the numerical error is that of the output, not of its {form}"
+SHARES_OF = "shares are of the variance of the {form}"
+NO_ERROR = "the model states no numerical error for it"
+NO_ERROR_OF = "the numerical error refers to the output, not to its {form}"
 
 
 @dataclass(frozen=True)
@@ -288,7 +288,7 @@ def levels(result: AnyResult, output: str | None = None, *, plain: bool = False)
         ``variance`` (the sum of the three components), ``samples_left_out`` and ``integrated``,
         names of inputs separated by spaces. The share of the solver, from ``<output>_error``, is
         contained in the others. Lifetimes are replaced by their logarithms, or by their ranks where
-        rows never end or are censored; a value with a heavy tail likewise. Of a model with regimes:
+        rows never end or are censored, as is a value with a heavy tail. Of a model with regimes:
         over ``sample``, ``another_regime``, the share of the other repeats of its unit that end in
         another regime; ``another_regime_mean``, with ``_low`` and ``_high``, their mean.
 

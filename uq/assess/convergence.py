@@ -179,8 +179,8 @@ def compared(result: Result, element: Element, described: Described) -> Errors:
 
 
 _WARNING = (
-    "the rows' own error ({numerical:.3g} {units}) is larger than that of sampling"
-    " ({sampling:.3g}): more rows do not help, finer settings or longer averages do"
+    "numerical error ({numerical:.3g} {units}) exceeds sampling error ({sampling:.3g}): more rows"
+    " do not help, finer settings or longer averages do"
 )
 
 

@@ -85,7 +85,7 @@ class CountedRows(Sample):
             (value, np.inf if value < latest else value),
             (early[0], early[0]),
             (early[1], late[1]),
-            f"{rows} rows are too few for the {probability:g} quantile: it needs {needed}"
+            f"{rows} rows are too few for the {probability:g} quantile: {needed} are required"
             if needed
             else "",
         )
@@ -179,7 +179,7 @@ class CountedRows(Sample):
         return Curve(estimate.share, *interval)
 
     def rows_needed(self, probability: float) -> int | None:
-        """Return how many rows a quantile needs; None where there are enough, or none."""
+        """Return the number of rows that a quantile requires; None if there are enough, or none."""
         rows = len(self.element.at_least)
         if rows == 0 or order_statistics.is_within(probability, rows):
             return None

@@ -80,7 +80,7 @@ class RegimeOfFirst:
 
 
 def earliest_rows(element: Element) -> Places:
-    """Return the places of the rows that end first: `SHARE` of those with a value, at most.
+    """Return the indices of the rows that fail first: at most `SHARE` of those with a value.
 
     Fewer where fewer end, or where a row was censored before: it may have ended earlier.
     """

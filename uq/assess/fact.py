@@ -77,7 +77,7 @@ class Fact:
         return change(replace(self, members=_mapped(self.members, lambda fact: fact.each(change))))
 
     def at(self, *path: str) -> "Place":
-        """Return what stands at a path, with its functions and rows.
+        """Return the content at a path, with its functions and rows.
 
         Raises
         ------

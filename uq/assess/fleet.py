@@ -94,7 +94,7 @@ def fleet(
     *,
     plain: bool = False,
 ) -> "pd.DataFrame":
-    """Estimate when the first unit of a fleet ends, and how many have ended by a time.
+    """Estimate the time of the first failure in a fleet, and the number of failures by a time.
 
     Parameters
     ----------
@@ -250,8 +250,8 @@ def _refuse(units: Units, size: int) -> None:
         verb = "is" if len(units.varying) == 1 else "are"
         raise InputError(
             f"uq fleet: a fleet of {size} needs samples of as many units, now {units.place.units}:"
-            f" in [design] {several('units', units.design, size)}; fewer are enough only where all"
-            f" that differs between units is integrated exactly, and {names} {verb} not"
+            f" in [design] {several('units', units.design, size)}; fewer are sufficient only if all"
+            f" differences between units are integrated exactly, and {names} {verb} not"
         )
 
 

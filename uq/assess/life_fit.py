@@ -37,13 +37,13 @@ MOST_DRAWN = 400 * REFITS
 LEVEL = 0.05
 
 INDEPENDENT_ONLY = (
-    "the test of fit holds for independent rows; use method = 'monte-carlo' with one row a sample,"
+    "the test of fit requires independent rows; use method = 'monte-carlo' with one row a sample,"
     " or, of imported rows that are independent, independent = true"
 )
 
 ASSUMES = (
-    "that lives follow this law: a test of {rows} rows that does not reject it is no proof, least"
-    " of all beyond the range of the rows"
+    "that lives follow this law: passing a test with {rows} rows is no proof, in particular beyond"
+    " the range of the rows"
 )
 """Assumption behind every number of an accepted law."""
 
@@ -104,7 +104,7 @@ def _fit(law: str, element: Element, independent: bool) -> Fit:
     locations, scales, distances = _refits(law, location, scale, seen)
     kept = np.isfinite(locations)
     if not np.isfinite(scale) or kept.mean() < CONFIDENCE:
-        return Fit(n, refused="the likelihood has no maximum that can be found")
+        return Fit(n, refused="the likelihood has no maximum")
     distances = distances[kept]
     distance = _distance(family, location[None], scale[None], seen)
     p_value = float((1 + (distances >= distance).sum()) / (1 + len(distances)))
@@ -140,9 +140,9 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
     never = int((np.isposinf(life) & ended).sum())
     if never:
         endless = counted(never, "never ends", "never end")
-        return f"of {len(life)} rows {endless}, and under this law all do"
+        return f"of {len(life)} rows {endless}, which this law excludes"
     if none := int((life <= 0).sum()):
-        return f"{counted(none, 'row has', 'rows have')} no positive life; under this law all have"
+        return f"{counted(none, 'row has', 'rows have')} no positive life, which this law excludes"
     if ended.sum() < MIN_ENDED:
         return f"only {counted(int(ended.sum()), 'row')} ended; {MIN_ENDED} are needed"
     if len(np.unique(life[ended])) < MIN_ENDED:

@@ -22,10 +22,12 @@ SOURCES = (*LEVELS, SOLVER)
 
 NONE, ALL = Estimate(0.0, 0.0, 0.0), Estimate(1.0, 1.0, 1.0)
 
-_ONE_REPEAT = "a single repeat cannot separate chance from what is own to a unit; {repeats}"
-_ONE_UNIT = "a single unit cannot show what is shared and what is own; {units}"
-_ONE_ROW = "a single row a sample cannot separate what is shared from chance; {repeats}"
-INCLUDES_CHANCE = "that chance counts as own"
+_ONE_REPEAT = "one repeat per unit cannot separate chance from differences between units; {repeats}"
+_ONE_UNIT = (
+    "one unit per sample cannot separate shared inputs from differences between units; {units}"
+)
+_ONE_ROW = "one row per sample cannot separate shared inputs from chance; {repeats}"
+INCLUDES_CHANCE = "that differences between units include chance"
 
 
 @dataclass(frozen=True)

@@ -151,7 +151,7 @@ class Population(Sample):
         return replace(share(on_side(threshold, side)), counts_hits=False, averages=True)
 
     def quantile_estimator(self, probability: float) -> Estimator:
-        """Return the estimator of a quantile; that of another study lies elsewhere."""
+        """Return the estimator of a quantile; another study has another time."""
 
         def rows(other: Element) -> SelectedRows:
             at = Population(other, None).middle(probability)
@@ -166,7 +166,7 @@ class Population(Sample):
         return self._share(self.element.never.astype(float), kept, part)
 
     def _share(self, numbers: Floats, kept: Mask, part: Replicates) -> Estimate:
-        """Estimate a probability, or say why the weights do not allow it."""
+        """Estimate a probability, or give the reason why the weights do not support it."""
         estimate = weighted_share(numbers[kept], self._weights(kept), part, None, self.confidence)
         return self._trusted(estimate, kept)
 
@@ -176,7 +176,7 @@ class Population(Sample):
         return None if weights is None else weights[kept]
 
     def _part(self, kept: Mask, time: float, side: int = 1) -> Replicates:
-        """Return the part of some rows, of which P(T < time) is read, or its complement.
+        """Return the rows of a part, or their complement, from which P(T < time) is estimated.
 
         Where rows are means over what they have learnt together, the law that they have learnt
         depends on how the terms go together with T < time inside each.
@@ -234,7 +234,7 @@ class Population(Sample):
         ends = f"no {' or '.join(missing)} end"
         if not rows < needed:
             return f"{ends}: too few rows carry it"
-        return f"{ends}: {rows:.3g} effective rows, and it needs {needed}"
+        return f"{ends}: {rows:.3g} effective rows, and {needed} are required"
 
     def _average(self, value: float) -> float:
         kept = self.element.present

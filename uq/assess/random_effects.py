@@ -27,14 +27,14 @@ _STEPS = 100
 _SETTLED = 1e-7
 
 ASSUMES = (
-    "that probits of the units' probability are about normal where noise hides their spread; their"
-    " intervals do not"
+    "that probits of the units' probabilities are normal where noise hides their spread; intervals"
+    " do not assume this"
 )
-FEW = f"needs {FEWEST_WORLDS} samples for points over what is shared"
+FEW = f"{FEWEST_WORLDS} samples are required for points over shared inputs"
 FEW_ENDED = f"fewer than {FEWEST_WORLDS} units have ended, or not ended, by then"
 REPEATED = "samples share one of a few values, with no points between: study each of them alone"
 NO_SPREAD = "samples do not differ by more than the noise of their units"
-ONE_UNIT = "a single unit cannot show what is shared and what is own"
+ONE_UNIT = "one unit per sample cannot separate shared inputs from differences between units"
 
 Exceeding = Callable[[float], Estimate]
 """Probability -> the share of worlds in which a unit has a larger one."""

@@ -92,7 +92,7 @@ def boundary_facts(result: Result, statistic: Statistic | None) -> Fact:
 
 
 def still_uncertain(exponent: Estimate) -> Estimate:
-    """Return the share of uncertain outcomes that stay so if all inputs are known twice as well."""
+    """Return the share of outcomes that remain uncertain with half the input uncertainty."""
     value, high, low = (2.0 ** -np.clip(exponent.numbers, 0.0, 1.0)).tolist()
     return Estimate(value, low, high)
 
@@ -101,8 +101,8 @@ def in_words(statistic: Statistic) -> str:
     """Return the meaning of an uncertainty exponent, in a clause."""
     value, high, low = (1 - end for end in still_uncertain(statistic.estimate).numbers)
     return (
-        f"if all inputs are known twice as well, {percent(value)} ({percent_interval(low, high)})"
-        " fewer outcomes are uncertain (50 % where the boundary between regimes is smooth, 0 %"
+        f"with half the uncertainty of all inputs, {percent(value)} ({percent_interval(low, high)})"
+        " fewer outcomes are uncertain (50 % at a smooth boundary between regimes, 0 %"
         " where they are intermingled everywhere)"
     )
 

@@ -174,8 +174,8 @@ class Weighting:
             if name not in inputs and (share := share_without_rows(self._old, self._new, name)):
                 return no_weights(
                     len(self._rows),
-                    f"uncertain.{name}: has {share:.2g} of its probability where the study's law"
-                    " has none, so that no row is there; run it as a study of its own",
+                    f"uncertain.{name}: has {share:.2g} of its probability outside the study's"
+                    " law, where there are no rows; run it as a separate study",
                 )
         weights = log_ratio(len(self._rows), self._old, self._new, inputs)
         if not np.isfinite(weights.max()):

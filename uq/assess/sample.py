@@ -280,7 +280,7 @@ class Sample(ABC):
         return None
 
     def rows_needed(self, probability: float) -> int | None:
-        """Return how many rows a quantile needs; None where there are enough, or none."""
+        """Return the number of rows that a quantile requires; None if there are enough, or none."""
         return None
 
     def integration_gain(self, probability: float) -> float:
@@ -302,7 +302,7 @@ class Sample(ABC):
 
 
 def on_side(threshold: float, side: str) -> Callable[[Element], SelectedRows | None]:
-    """Return a function from elements to the probability that each row lies on a side."""
+    """Return a function from elements to the probability that each row is on a side."""
 
     def rows(element: Element) -> SelectedRows | None:
         if element.law is None and element.unknown_sides(threshold).any():

@@ -31,7 +31,7 @@ def share_below(
     Parameters
     ----------
     input_below : callable
-        Probability that the input of each row lies below a value.
+        Probability that the input of each row is below a value.
     drawn : ndarray, shape (n,)
         The value of each row.
     exponent : float
@@ -125,7 +125,7 @@ class ConditionalScale:
         return share_below(self._given_others, self.drawn, self.exponent, lives, time)
 
     def _given_others(self, value: Floats) -> Floats:
-        """Return the probability that the input of each row lies below a value."""
+        """Return the probability that the input of each row is below a value."""
         if self.other is None:
             share = cdf_within(self.law, value, self.bounds)
         else:
@@ -266,7 +266,7 @@ class LearntScale:
         return terms.below(share) if self.exponent > 0 else terms.means - terms.below(1 - share)
 
     def _given_inspections(self, value: Floats) -> Floats:
-        """Return the probability that the input of each row lies below a value."""
+        """Return the probability that the input of each row is below a value."""
         score = special.ndtri(cdf_within(self.law, value, self.bounds))
         passed = (self.scores <= score[:, None]).sum(axis=1)
         after = np.clip(passed, 1, len(_FINE) - 1)

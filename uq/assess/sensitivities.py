@@ -210,7 +210,7 @@ def indices_of_target(
     sample: DesignSample,
     notes: tuple[str, ...] = (),
 ) -> TargetIndices:
-    """Estimate the indices of a target, or say why there are none.
+    """Estimate the indices of a target, or give the reason why there are none.
 
     Parameters
     ----------

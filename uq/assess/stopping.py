@@ -172,7 +172,7 @@ def _statistics(design: "DesignTable", result: Result) -> Iterator[InterimEstima
 
 
 def _lost(element: Element) -> str:
-    """Return how many rows of an element failed or are undefined, in words."""
+    """Return the number of failed and undefined rows of an element, in words."""
     failed, undefined = int(element.failed.sum()), int(element.undefined.sum())
     return " and ".join(
         [counted(failed, "failed row")] * (failed > 0)
@@ -183,7 +183,7 @@ def _lost(element: Element) -> str:
 def statistic(
     element: Element, until: "Until", replicate: intervals.Replicates, level: float
 ) -> Estimate:
-    """Estimate what a study means of an element of independent rows.
+    """Estimate the statistic that a study monitors, for an element of independent rows.
 
     Parameters
     ----------
@@ -248,7 +248,7 @@ def _indices(design: "DesignTable", result: Result) -> Iterator[InterimEstimate]
 
 
 def _targets(result: Result, output: str) -> Iterator[IndexTarget]:
-    """Yield what has an index: each element that is meant, or all of them together."""
+    """Yield the targets with an index: each selected element, or all of them together."""
     elements = result.named_elements(output)
     if is_whole(output):
         yield next(wholes(elements))
@@ -282,41 +282,41 @@ def why_ended(design: "DesignTable", result: Result) -> str:
     wanted = _wanted(until.half_width, unit)
     if not seen.reached:
         needed = _needed(seen, samples)
-        more = f": by the scatter of all rows it needs about {needed} samples" * bool(needed)
+        more = f": from the scatter of all rows, about {needed} samples are required" * bool(needed)
         spent = f"the budget of {samples} samples is spent: {stated}"
         return f"{spent}; the {wanted} was not reached{more}"
     sizes = interim_sizes(design)
     first = "" if size == samples else f" with the first {size} of {samples} samples"
     return (
         f"{stated}: the {wanted} was reached at interim estimate {1 + sizes.index(size)} of at most"
-        f" {len(sizes)}{first}. The confidence of {confidence(design):.2%} at each makes this a"
-        " 95 % interval for a run that stops so; all other intervals assume a number of rows fixed"
-        " beforehand"
+        f" {len(sizes)}{first}. A confidence of {confidence(design):.2%} at each preserves an"
+        " overall confidence of 95 % (group-sequential); all other intervals assume a fixed sample"
+        " size"
     )
 
 
 def out_of_reach(design: "DesignTable", seen: InterimEstimate, samples: int) -> str:
-    """State that a run will probably spend its budget in vain; "" where it may stop before.
+    """State that a run will probably exhaust its budget; "" if it may stop before.
 
     Parameters
     ----------
     design : DesignTable
         With `until`.
     seen : InterimEstimate
-        Interim estimate of a run that goes on.
+        Interim estimate of a run that continues.
     samples : int
         Of each replicate, so far.
     """
     assert design.until is not None
     began = f"after {samples} samples"
     if _has_none(seen) or seen.estimate.value == inf:
-        rest = f"while that is so the run goes on, to its budget of {design.samples} samples"
+        rest = f"the run then continues up to its budget of {design.samples} samples"
         return f"{began} {_without_interval(seen)}; {rest}"
     if not isfinite(seen.half_width) or seen.rows_factor * samples <= HOPELESS * design.samples:
         return ""
     unit = unit_of(seen.units, seen.estimate.value)
     return (
-        f"{began} {seen.what} {_in_words(seen.estimate, unit)}: by the scatter so far, the"
+        f"{began} {seen.what} {_in_words(seen.estimate, unit)}: from the scatter so far, the"
         f" {_wanted(design.until.half_width, unit)} needs about {_needed(seen, samples)} samples,"
         f" more than the budget of {design.samples}, which this run will spend"
     )
@@ -332,7 +332,7 @@ def _without_interval(seen: InterimEstimate) -> str:
     """State that an estimate has no interval that can become narrow, and why."""
     estimate = seen.estimate
     if estimate.value == inf:
-        return f"{seen.what} is {rounded_text(estimate)[0]}, which no interval narrows"
+        return f"{seen.what} is {rounded_text(estimate)[0]}, which has no interval"
     value = f"is {in_unit(estimate.value, unit_of(seen.units, estimate.value))} and "
     why = f" ({estimate.reason})" * bool(estimate.reason)
     return f"{seen.what} {value * isfinite(estimate.value)}has no interval{why}"

@@ -29,7 +29,7 @@ from uq.text.units import ReadableUnit, typical, unit_of
 
 NO_INTERVALS = (
     "no intervals: the rows of a '{design}' design are not independent, and a single replicate"
-    " does not show how far its estimates scatter; set replicates = 8"
+    " cannot show the scatter of its estimates; set replicates = 8"
 )
 
 NOT_STATED = (
@@ -37,7 +37,9 @@ NOT_STATED = (
     " the laws, set independent = true in [design]"
 )
 
-SEVERAL_ROWS = "the rows of one sample are not independent ({size}): intervals rest on samples"
+SEVERAL_ROWS = (
+    "the rows of one sample are not independent ({size}): intervals are computed from samples"
+)
 NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
 
 SOME_FAILED = (

@@ -34,7 +34,7 @@ Transformed = tuple[Floats, str]
 
 
 def tail_share(values: Floats) -> float:
-    """Return the share of the variance that lies in the 1 % of rows farthest from the mean.
+    """Return the share of the variance due to the 1 % of rows farthest from the mean.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def heaviness(values: Floats) -> str:
     """
     share = tail_share(values)
     if share > HEAVY:
-        return f"{100 * LARGEST:g} % of the rows hold {percent(share)} of the variance"
+        return f"{100 * LARGEST:g} % of the rows account for {percent(share)} of the variance"
     tail = heavier_tail(values[np.isfinite(values)])
     if tail is not None and tail.no_variance:
         return f"the {tail.side} tail suggests an infinite variance (k = {tail.k:.2g})"

@@ -172,7 +172,7 @@ def _sharpened(label: str, sharpened: Sharpened) -> Fact:
     return Fact(members | note, by, notes=TWIN_ROWS)
 
 
-TWIN_ROWS = ("It also rests on rows of the twin alone.",)
+TWIN_ROWS = ("It also uses rows of the twin alone.",)
 
 _MEAN = (controlled_mean,), (moments, mean_interval)
 _SHARE = (controlled_share,), (share_of, share_interval)
@@ -210,11 +210,11 @@ def _note_on_few(hits: int, rows: int) -> str:
     if rarer >= FEW:
         return ""
     if rarer < FEWEST:
-        consequence = f"the twin is not used below {FEWEST}; these are the plain rows"
+        consequence = f"the twin is not used below {FEWEST}; plain rows give the estimate"
     else:
         consequence = f"below {FEW} the interval is exact, and conservative"
     seen = f"{hits} of {rows} rows" if hits == rarer else f"all but {rarer} rows"
-    return f"{seen} lie there: {consequence}"
+    return f"{seen} are there: {consequence}"
 
 
 def _filled(control: Element) -> Floats:

@@ -25,7 +25,7 @@ from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 from uq.text.literals import key, read_toml, shown, toml
 
-SAME = "what if: which inputs are the same cannot be changed"
+SAME = "what if: 'equals' cannot be changed"
 
 
 @dataclass(frozen=True)
@@ -235,7 +235,7 @@ def _refuse(result: Result, old: Inputs, new: Inputs) -> None:
         listed = [name for name in old.correlated if old.laws[name].discrete]
         if listed:
             raise InputError(
-                f"what if: the listed values of '{listed[0]}' do not show how far it depends on"
+                f"what if: the listed values of '{listed[0]}' do not determine its dependence on"
                 f" {', '.join(changed_laws(old, new)) or 'the others'}"
             )
     if not result.shown_outputs(result.analysis):

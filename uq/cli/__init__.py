@@ -5,7 +5,7 @@ Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
 Reading order; each part imports only those above it:
 
     printing        text, numbers and tables on a terminal, and JSON
-    progress        progress of a run, live on a terminal, else in occasional lines
+    progress        the progress of a run
     options         arguments and options shared by several verbs of ``uq``, with their help
     streams         standard streams that are closed, full or lack characters
     compare         the output of ``uq compare``

@@ -54,7 +54,7 @@ def _show(differences: Comparison, first: Path, second: Path) -> None:
 
 
 _HEADER = ("", "A", "B", "B - A", "95 % interval", "")
-_POINTWISE = "The intervals are pointwise: one in twenty misses."
+_POINTWISE = "The intervals are pointwise: one in twenty is expected to miss."
 
 
 def _about(side: Side) -> str:
@@ -124,5 +124,5 @@ def _times(name: str, ratio: Estimate) -> str:
     ends = interval_text(ratio)
     change = 1 - ratio.value**2
     words = f"{abs(change):.0%} {'less' if change > 0 else 'more'} variance"
-    was = f"{number(ratio.value)} times what it was{f' ({ends})' if ends else ''}"
+    was = f"{number(ratio.value)} times its former value{f' ({ends})' if ends else ''}"
     return f"{name}: {was}, {words}."

@@ -78,8 +78,8 @@ def twin(result: Path, model: str | None, json: bool) -> None:
                 both = "with failed rows at best and worst"
                 paragraph(f"{target.label(label)}, {both}: {worst}", indent=2)
     note(
-        "worth: without twin, so many times the rows would be as accurate. The twin's own rows are"
-        " not counted: it pays if one of them takes less than (worth - 1) /"
+        "worth: variance reduction factor against plain Monte Carlo, without the cost of the twin's"
+        " rows. The twin pays if one of its rows takes less than (worth - 1) /"
         f" {1 + fidelities.cheap_rows / fidelities.rows:.3g} of the time of a row"
     )
 

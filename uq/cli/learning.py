@@ -90,17 +90,17 @@ def _show(result: Result, answer: Learnt) -> None:
         heading("\nConfounded by the inspections", "rank correlation")
         grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in answer.confounded[:5]])
     if answer.taught:
-        heading("\nTaught most", "beyond all other inspections [bit]")
+        heading("\nInformation gain", "beyond all other inspections [bit]")
         most = sorted(answer.taught, key=lambda gain: -gain.bits)[:5]
         grid([(_inspection_label(gain), f"{gain.bits:.2f}") for gain in most])
     for output in dict.fromkeys(remaining.output for remaining in answer.lives):
         _show_lives([remaining for remaining in answer.lives if remaining.output == output])
     if any(learnt_input.posterior.mean.has_interval for learnt_input in answer.inputs):
-        note("error: how far, with 95 % confidence, the rows may be off the mean after.")
+        note("error: 95 % Monte Carlo error of the mean after.")
     for text in answer.notes:
         note(text)
     worst = answer.worst
-    text = f"The rows are worth {worst.effective:.0f} of equal weight, or more"
+    text = f"The effective sample size is {worst.effective:.0f} or more"
     note(text + (f"; Pareto k = {worst.k:.2f}." if isfinite(worst.k) else "."))
 
 
@@ -185,9 +185,9 @@ def next_inspection(
         lines.append((when, *(percent(share) if share == share else "-" for share in shares)))
     grid(lines, header=("", *(counted(count, "unit") for count in units)))
     note(
-        f"What units share scatters this life by a factor of {exp(expected.spread):.3g} (one"
-        " standard deviation); each cell is the share by which the logarithm of that factor is"
-        " expected to fall. The scatter between units remains."
+        f"Shared inputs scatter this life by a factor of {exp(expected.spread):.3g} (one"
+        " standard deviation); each cell is the expected relative reduction of the logarithm of"
+        " that factor. The scatter between units remains."
     )
     for text in expected.notes:
         note(text)

@@ -26,9 +26,7 @@ ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
 Explain = Annotated[bool, typer.Option("--explain", help="Show the answer in sentences.")]
 Full = Annotated[bool, typer.Option("--full", help="Show statistics of each output.")]
-Plain = Annotated[
-    bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
-]
+Plain = Annotated[bool, typer.Option("--plain", help="No exact integration: lives as computed.")]
 ModelReference = Annotated[
     str | None,
     typer.Option(
@@ -53,7 +51,7 @@ Settings = Annotated[
     typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
 ]
 Mixed = Annotated[
-    bool, typer.Option("--mixed", help="Keep rows computed by other code of the model.")
+    bool, typer.Option("--mixed", help="Keep rows from another version of the model.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
 OnlyOutput = Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")]

@@ -18,7 +18,7 @@ from uq.text.quantities import read_threshold
 
 
 def limit(study: Study, output: str, above: str | None, below: str | None) -> tuple[float, bool]:
-    """Return the threshold that one of two options gives, and whether the event lies below it."""
+    """Return the threshold that one of two options gives, and whether the event is below it."""
     if (above is None) == (below is None):
         raise InputError("uq: give one of --above and --below")
     name = output.partition("[")[0]

@@ -57,7 +57,7 @@ def verify(path: Path, model: str | None) -> int:
     ds = result_file.open_result(path)
     others = other_versions(ds, model)
     for name, (made, here) in others.items():
-        console.print(f"{name}  {made} made it, {here} is here")
+        console.print(f"{name}  {made} made it, here {here}")
     if not others:
         console.print("versions  the same as here")
     with compilation(progress.say_compiling):
@@ -66,8 +66,8 @@ def verify(path: Path, model: str | None) -> int:
         console.print(f"recomputed, differs in {line}")
     if differences and holds and not others:
         console.print(
-            "File and code are the same: this model does not return the same for the same row. It"
-            " keeps something between rows, or draws random numbers that do not depend on its seed."
+            "File and code are unchanged, but the model returns other values for the same row. It"
+            " keeps state between rows, or draws random numbers independent of its seed."
         )
     equal = len(rows) - len(differences)
     console.print(f"rows      {equal} of {len(rows)} recomputed are equal to the bit")

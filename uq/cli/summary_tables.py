@@ -175,7 +175,7 @@ def _of_statistic(statistic: Statistic, block: Block) -> Iterator[Line]:
 
 
 def _reasons(output: Described, block: Block) -> Iterator[str]:
-    """Yield why numbers are missing, each reason once, unless a note says it."""
+    """Yield the reasons for missing numbers, each once, unless a note states it."""
     lacking: dict[str, list[str]] = {}
     noted = {text for statistic in output.statistics for text in statistic.notes}
     for statistic in output.statistics:

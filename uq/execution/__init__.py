@@ -4,12 +4,12 @@ Reading order; each part imports only those above it:
 
     options         options of a run and its progress
     child           a process that computes rows for its parent
-    tally           rows of a run packed into arrays and chunk files, and counted
+    tally           rows of a run
     environment     start of child processes with the same imports and compilation as this
     row_folder      folder beside a result that keeps its rows, and the records of its journal
     isolation       rows computed in separate processes, in case they crash or hang
     disk_store      crash-safe storage of arriving rows on disk
-    status          progress of a run, read from its journal without disturbing it
+    status          progress of a run, even one under way
     dask_task       the task of a dask worker: plain data in, plain data out
     scaling_checks  check the scaling exponents declared by an external machine against
     resuming        start or resume a run whose rows are kept on disk
@@ -18,7 +18,7 @@ Reading order; each part imports only those above it:
     clusters        dask workers of this computer, or of an existing cluster
     recomputed_row  recomputation of a stored row, and its comparison with the stored values
     single_row      one row of a model, in a separate process if the model may crash
-    executor        rows taken in chunks, computed here or on workers, and kept
+    executor        rows of one run
     planning        cost of a study, estimated from a few of its rows
     runner          run of a study: rows in chunks, on this computer or on dask workers
     amending        changes to an existing result: extend it, rerun failed rows, or verify rows

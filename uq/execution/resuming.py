@@ -157,8 +157,8 @@ def _check_code(study: Study, path: Path, origins: Sequence[Mapping[str, object]
     """Refuse to resume with rows computed by other code of the model."""
     if any(is_other_code(made, study.model_reference) for made in origins):
         raise InputError(
-            f"{path}: has rows that other code of model '{study.model.name}' computed, although "
-            "its version is the same; start over with uq run --fresh, or continue with --mixed"
+            f"{path}: has rows from other code of model '{study.model.name}' with the same version;"
+            " start over with uq run --fresh, or continue with --mixed"
         )
 
 
@@ -204,10 +204,10 @@ def _incomplete(ds: xr.Dataset, study: Study) -> str:
         return "'row' does not number all rows from 0"
     for name in study.model.parameter_names:
         if name not in ds.data_vars or ds[name].attrs.get("role") not in ("input", "fixed"):
-            return f"it does not hold the input '{name}'"
+            return f"it does not contain the input '{name}'"
     for name, column in columns_of(study.model, study.settings).items():
         if name not in ds.data_vars:
-            return f"it does not hold the output '{name}'"
+            return f"it does not contain the output '{name}'"
         if ds[name].dims[:1] != ("row",) or ds[name].shape[1:] != column.shape:
             return f"'{name}' is not of the shape that the settings give"
     return ""

@@ -162,7 +162,7 @@ def line_on_other_code(study: Study, path: Path, ds: xr.Dataset) -> str:
     if not is_other_code(ds.attrs, study.model_reference):
         return ""
     return (
-        f"{path}: has rows that other code of model '{study.model.name}' computed; 'uq verify' "
+        f"{path}: has rows from other code of model '{study.model.name}'; 'uq verify' "
         "compares them with the code here, 'uq run --fresh' computes all of them again"
     )
 

@@ -9,7 +9,7 @@ from uq.explore.subset_simulation import LEVEL_SHARE, SMALLEST
 from uq.text.numbers import counted
 
 _ENDS = {
-    "plateau": "ended on a plateau, where no row lies above the others",
+    "plateau": "ended on a plateau, where no row is above the others",
     "smallest": f"ended at levels below {SMALLEST:g}: the threshold may be out of reach",
 }
 """Why replicates of subset simulation ended before the event."""
@@ -36,12 +36,12 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
         notes.append(
             f"method '{ds.attrs['method']}' missed a part of the event: it gives"
             f" {float(estimates.mean()):.2g}, and {int(ds['wide_hits'])} of"
-            f" {int(ds['wide_rows'])} rows drawn wide lie within; their estimate is shown"
+            f" {int(ds['wide_rows'])} rows drawn wide are in it; their estimate is shown"
         )
     elif factor > 1:
         notes.append(
             f"replicates differ by a factor of {factor:.2g}, more than their chains explain: a part"
-            " of the event is entered by a jump; the high end is what plain rows support"
+            " of the event is entered by a jump; the high end is from plain rows"
         )
     if "hidden_high" in ds:
         above = is_above(float(ds["wide"]), float(ds["wide_low"]), most)
@@ -52,19 +52,19 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
                 + ("; the high end is theirs" if most == ds["wide_high"] else "")
             )
         notes.append(
-            f"a part of the event that no trend of the output leads to, and that no row met, is"
+            f"an isolated part of the event, reached neither by a trend nor by a row, is"
             f" excluded only above {float(ds['hidden_high']):.2g} (95 %)"
         )
         if ds["wide_failed"] > 0:
             notes.append(
-                f"{int(ds['wide_failed'])} of {int(ds['wide_rows'])} rows drawn wide failed: where"
-                " they lie, no missed part is looked for"
+                f"{int(ds['wide_failed'])} of {int(ds['wide_rows'])} rows drawn wide failed:"
+                " missed parts are not searched for there"
             )
     if np.isnan(most):
         notes.append("no interval: a single replicate does not show the scatter of its estimate")
     if lost and not by_wide:
         seen = (
-            "no row lies beyond the threshold"
+            "no row is beyond the threshold"
             if lost == count
             else f"{lost} of {count} replicates did not reach the threshold"
         )
@@ -75,15 +75,15 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
             if cause in ended
         )
         notes.append(
-            f"{seen}: the rows only support a probability below {most:.2g}{ends};"
-            " more samples support a lower one"
+            f"{seen}: the rows only show a probability below {most:.2g}{ends};"
+            " more samples can show a lower one"
         )
     elif ds.attrs["method"] == "subset" and ds["probability"] > LEVEL_SHARE:
-        notes.append("not a rare event: 'uq run' with this threshold reports as much, and more")
+        notes.append("not a rare event: 'uq run' with this threshold is sufficient")
     if ds.attrs["estimated_by"] == "importance":
         notes.append(
-            "valid only if the event lies around the design points that were found; method"
-            " 'subset' does not need them"
+            "valid only if the event is near the design points that were found; method 'subset'"
+            " does not need them"
         )
     if margin.failed:
         causes = "".join(f"; {label}: {text}" for label, text in margin.failures.items())

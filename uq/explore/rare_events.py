@@ -273,7 +273,7 @@ def _importance(
     hits, failed = int((first > 0).sum()), margin.failed
     if hits == samples:
         raise InputError(
-            f"no design point to find: all of {samples} rows lie beyond the threshold; 'uq run'"
+            f"no design point to find: all of {samples} rows are beyond the threshold; 'uq run'"
             " with this threshold gives its probability"
         )
     points = design_points(margin, u, first)

@@ -141,7 +141,7 @@ def _walk(library: Any, file: int, most: int) -> None:
 
     _done(library.H5Literate2(file, 0, 0, None, _VISIT(visit), None))
     if len(names) > _MOST_OBJECTS:
-        raise ValueError(f"it holds more than {_MOST_OBJECTS} variables")
+        raise ValueError(f"it contains more than {_MOST_OBJECTS} variables")
     _attributes(library, file, b".", most)
     claimed = 0
     for name, link in zip(names, links, strict=True):
@@ -169,7 +169,7 @@ def _attributes(library: Any, file: int, name: bytes, most: int) -> int:
     kind = int.from_bytes(info.raw[_TYPE_AT : _TYPE_AT + 4], "little")
     count = int.from_bytes(info.raw[_COUNT_AT : _COUNT_AT + 8], "little")
     if count > _MOST_ATTRIBUTES:
-        raise ValueError(f"it holds more than {_MOST_ATTRIBUTES} attributes of one variable")
+        raise ValueError(f"it contains more than {_MOST_ATTRIBUTES} attributes of one variable")
     for number in range(count):
         opened = library.H5Aopen_by_idx(file, name, 0, 0, number, 0, 0)
         with _closing(opened, library.H5Aclose) as attribute:

@@ -2,17 +2,17 @@
 
 Reading order; each part imports only those above it:
 
-    index              kinds of indices, with an estimate for every input
+    index              results of a sensitivity method
     residual_variance  residual variance given one input
     polynomials        polynomials in correlated normal scores (Wick products)
-    measures           given-data measures: random balance, delta, PAWN, distances
-    method             a sensitivity method: its data, its required rows, its estimates
+    measures           given-data sensitivity measures
+    method             sensitivity methods
     expansions         sensitivity indices from SALib's expansions: extended FAST and HDMR
     given_data         given-data sensitivity indices from a plain sample
-    groups             intervals of methods with grouped rows, and Morris' effects
+    groups             confidence intervals of methods with grouped rows
     shapley            Shapley effects, which are shares of the variance that sum to 1
     first_order        first-order Sobol' indices from a plain sample, with confidence intervals
-    hsic               kernel measures (HSIC): of an event, and conditional on one
+    hsic               kernel dependence measures (HSIC)
     sobol              Sobol' indices of a crossed design
     methods            registry of the sensitivity methods
 """

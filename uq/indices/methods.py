@@ -30,17 +30,14 @@ DELTA = IndexKind("delta", "Borgonovo's delta")
 PAWN = IndexKind("pawn", "PAWN, median")
 KS = IndexKind("KS", "Kolmogorov's distance of the rows where it happens")
 
-_AT_ONE_SEED = (
-    "shares of the variance at one seed, in which noise that does not depend on the inputs has no"
-    " part"
-)
+_AT_ONE_SEED = "shares of the variance at one seed, excluding noise independent of the inputs"
 
 _of_plain_rows = partial(SensitivityMethod, layout=PLAIN, has_null=True, least=MIN_ROWS)
 _of_any_inputs = partial(_of_plain_rows, assumes_independence=False)
 
 METHODS = {
     "first-order": SensitivityMethod(
-        "how much of the variance, alone",
+        "share of the variance, alone",
         PLAIN,
         first_order_indices,
         (S1,),
@@ -50,14 +47,14 @@ METHODS = {
         aggregates=True,
     ),
     "rbd-fast": _of_plain_rows(
-        "how much of the variance, alone, in smooth functions",
+        "share of the variance, alone, in smooth functions",
         estimate=beside_nulls(one_kind(S1, first_order)),
         kinds=(S1,),
         source="random balance, bias corrected; correlation ratio of inputs with many equal values",
         aggregates=True,
     ),
     "delta": _of_any_inputs(
-        "how much the whole distribution moves",
+        "shift of the entire distribution",
         estimate=beside_nulls(one_kind(DELTA, delta)),
         kinds=(DELTA,),
         source="Plischke et al. (2013), on normal scores of the output",
@@ -66,7 +63,7 @@ METHODS = {
         scale_free=True,
     ),
     "pawn": _of_any_inputs(
-        "how much the whole distribution moves, by its largest shift",
+        "largest shift of the distribution",
         estimate=beside_nulls(one_kind(PAWN, pawn)),
         kinds=(PAWN,),
         source="Pianosi & Wagener (2018)",
@@ -74,7 +71,7 @@ METHODS = {
         scale_free=True,
     ),
     "hdmr": _of_plain_rows(
-        "how much of the variance, alone, in pairs and in total",
+        "share of the variance, alone, in pairs and in total",
         estimate=hdmr_indices,
         kinds=(S1, ST, SHAPLEY, S2),
         source="polynomials in one and in two inputs (Li et al. 2010); refused where they explain"
@@ -116,7 +113,7 @@ METHODS = {
         scale_free=True,
     ),
     "sobol": SensitivityMethod(
-        "how much of the variance, alone and with others",
+        "share of the variance, alone and with others",
         CROSSED,
         sobol_indices,
         (S1, ST, S2),
@@ -131,7 +128,7 @@ METHODS = {
         pilot=pilot,
     ),
     "morris": SensitivityMethod(
-        "which inputs matter at all",
+        "which inputs have any effect",
         TRAJECTORIES,
         morris_indices,
         (MU, SIGMA, MU_STAR),
@@ -141,7 +138,7 @@ METHODS = {
         noise="the model is random, and the rows of a trajectory share a seed: no effect is noise",
     ),
     "shapley": SensitivityMethod(
-        "how much of the variance, in shares that sum to one",
+        "shares of the variance that sum to one",
         PATHS,
         shapley_indices,
         (SHAPLEY,),
@@ -153,7 +150,7 @@ METHODS = {
         noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
     ),
     "fast": SensitivityMethod(
-        "how much of the variance, alone and with others, without intervals",
+        "share of the variance, alone and with others, without intervals",
         CURVES,
         fast_indices,
         (S1, ST),

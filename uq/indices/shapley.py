@@ -246,6 +246,6 @@ def _refuse_unknown_variance(parts: Floats, leverage: Floats, confidence: float)
     variance, errors = float(mean.sum()), ((parts - mean) / (1 - leverage)).sum(axis=1)
     if variance <= 0 or scatter_interval(variance, errors, confidence)[0] <= 0:
         raise RefusedError(
-            f"{len(parts)} paths do not tell the variance from zero, and shares of it are not"
-            " known: more samples are needed"
+            f"{len(parts)} paths do not distinguish the variance from zero: more samples are needed"
+            " for shares of it"
         )

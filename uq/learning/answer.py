@@ -106,8 +106,8 @@ def learnt(result: AnyResult, by: Sequence[float] = ()) -> Learnt:
 def _warnings(strange: float) -> Iterator[str]:
     if strange < STRANGE:
         yield (
-            f"Warning: inspections as improbable as these had a probability of {percent(strange)}"
-            " before; a law, the model (--model-error) or an inspection may be wrong."
+            f"Warning: the inspections contradict the prior (p-value {percent(strange)}):"
+            " a law, the model (--model-error) or an inspection may be wrong."
         )
 
 
@@ -117,7 +117,7 @@ def _alike(labels: Sequence[str]) -> Iterator[str]:
     for label in labels:
         letters = "".join(normalize("NFKC", label).casefold().split())
         if (other := seen.setdefault(letters, label)) != label:
-            yield f"Warning: '{other}' and '{label}' are taken for two units."
+            yield f"Warning: '{other}' and '{label}' are treated as two units."
 
 
 def _interpolated(updated: Posterior) -> Iterator[str]:
@@ -128,8 +128,8 @@ def _interpolated(updated: Posterior) -> Iterator[str]:
         if np.isfinite(errors).any():
             most = percent(float(np.nanquantile(errors, 0.9)))
             yield (
-                f"{observable.name} at a time is interpolated; with a declared depth left out it is"
-                f" wrong by up to {most} in nine of ten rows."
+                f"{observable.name} at a time is interpolated; without one of the declared depths"
+                f" it changes by up to {most} in nine of ten rows."
             )
 
 

@@ -24,8 +24,8 @@ from uq.stats.importance_weights import Smoothed
 _WHOLE = "no row of this result agrees with"
 
 NO_OTHERS = (
-    "only what units share is learnt, not the lives of units never inspected: each unit of a sample"
-    " stands for an inspected one; set [design] units = {} or more"
+    "only shared inputs are learnt, not the lives of uninspected units: each unit of a sample"
+    " represents an inspected one; set [design] units = {} or more"
 )
 
 

@@ -22,8 +22,8 @@ STRANGE = 0.01
 """Prior-predictive p-value below which a warning is issued."""
 
 HOPELESS = (
-    "few rows agree with the inspections, and this takes many times the rows; where"
-    " these do not help either, the laws, the model (--model-error) or an inspection may be wrong"
+    "few rows agree with the inspections: many times the rows are required; if they do not help,"
+    " a law, the model (--model-error) or an inspection may be wrong"
 )
 
 _MODERATE = 100.0
@@ -113,15 +113,15 @@ def censoring(posterior: Posterior) -> str:
         )
         if share > _OPEN:
             return (
-                f"unit {label}: {percent(share)} of the rows were censored before what its"
-                f" inspections found{_or_stopped(posterior, label)}"
+                f"unit {label}: {percent(share)} of the rows were censored before its"
+                f" inspections{_or_stopped(posterior, label)}"
             )
     return ""
 
 
 def distrust(posterior: Posterior) -> str:
-    """Return why the weights of a posterior are unreliable, or ""."""
-    weighted_by_name = {"what all units share": posterior.any_unit}
+    """Return the reason why the weights of a posterior are unreliable, or ""."""
+    weighted_by_name = {"shared inputs": posterior.any_unit}
     weighted_by_name |= {f"unit {label}": weighted for label, weighted in posterior.units.items()}
     fewest_first = sorted(weighted_by_name.items(), key=lambda pair: pair[1].weights.effective)
     return next(

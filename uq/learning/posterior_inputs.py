@@ -22,7 +22,7 @@ QUANTILES = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 CONFOUNDED = 0.3
 """Smallest reported rank correlation of a pair, in magnitude."""
 
-_FEW_ROWS = "it rests on a few rows, and more hardly help; read the quantiles"
+_FEW_ROWS = "it depends on a few rows, and more hardly help; use the quantiles"
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Confounded:
 
 
 def inputs_learnt(result: Result) -> Iterator[InputLearnt]:
-    """Yield the shared inputs of a posterior, then those of each inspected unit."""
+    """Yield the shared inputs of a posterior, then the inputs of each inspected unit."""
     levels, before = result.levels, prior_of(result)
     asked = tuple(sorted({*QUANTILES, *result.analysis.quantiles}))
     counted = importance_of(before)

@@ -3,16 +3,16 @@
 Reading order; each part imports only those above it:
 
     compilation      detect compilation by numba, which may take a while
-    returned         outputs of a function: declared, or inferred from rows
-    row_resources    folder and child processes of a row of a program, which end with it
+    returned         outputs of a function
+    row_resources    resources of a row of a program
     row_by_row       rows computed one after the other by a function of numbers that returns a
-    um_bridge        the protocol of UM-Bridge models: JSON over HTTP
+    um_bridge        the protocol of UM-Bridge models [1]_
     function         plain function as a machine, row by row or compiled by numba
     machine_file     a machine file: a program, its input and its results, described in TOML
     server           a model on a UM-Bridge server as a machine: each row is a separate call
     serving          server that offers a model by the protocol of UM-Bridge
     fmu_description  description of an FMU [1]_, read by FMPy
-    program_outputs  outputs of a program: from JSON, CSV, netCDF, or a pattern
+    program_outputs  outputs of a program
     fmu              an FMU as a machine: each row simulates a separate instance
     program          program as a machine: each row is computed in a separate folder
     program_or_fmu   choice between the two kinds of machine files: of a program, and of an FMU

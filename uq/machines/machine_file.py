@@ -266,7 +266,7 @@ def _faults(machine_file: MachineFile, folder: Path) -> Iterator[InputFault]:
         low, high = parameter.bounds
         if not (isfinite(parameter.nominal) and low <= parameter.nominal <= high):
             yield InputFault(
-                ("parameters", name, "nominal"), "must lie within the bounds", parameter.nominal
+                ("parameters", name, "nominal"), "must be within the bounds", parameter.nominal
             )
     for file in machine.files:
         if not (folder / file).exists():
@@ -299,7 +299,7 @@ def _is_name(file: str) -> bool:
 
 
 def _is_within(file: str) -> bool:
-    """Whether a file lies in the folder of a row, not in one that other rows share."""
+    """Whether a file is in the folder of a row, not in one that other rows share."""
     return bool(file) and not Path(file).is_absolute() and ".." not in Path(file).parts
 
 

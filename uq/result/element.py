@@ -122,7 +122,7 @@ class Element:
         return replace(self, law=None)
 
     def below(self, threshold: float, signed: bool = False) -> Floats:
-        """Return the probability that each row lies below a threshold, shape (n,).
+        """Return the probability that each row is below a threshold, shape (n,).
 
         Of an angle its magnitude counts, unless `signed`.
         """
@@ -133,7 +133,7 @@ class Element:
             return ((values < threshold) & ~self.censored).astype(float)
 
     def above(self, threshold: float) -> Floats:
-        """Return the probability that each row lies above a threshold, shape (n,)."""
+        """Return the probability that each row is above a threshold, shape (n,)."""
         if self.law is not None:
             return np.where(self.present, 1 - self.law.below(self.values, threshold), 0.0)
         values = self.for_thresholds

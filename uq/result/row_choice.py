@@ -108,7 +108,7 @@ def near_quantile_row(result: Result, probability: float, name: str) -> Choice:
     """
     if not 0 < probability < 1:
         raise InputError(
-            f"--near-quantile {probability:g}: must lie between 0 and 1; write 0.05 for 5 %"
+            f"--near-quantile {probability:g}: must be between 0 and 1; write 0.05 for 5 %"
         )
     result.refuse_if_weighted("--near-quantile")
     if why := result.why_no_statistics:

@@ -204,7 +204,7 @@ def _study_faults(ds: xr.Dataset) -> Iterator[str]:
     for verb, role, names in zip(("varies", "asks for"), ("input", "output"), named, strict=True):
         for name in map(str, names):
             if name not in ds.data_vars or ds[name].attrs.get("role") != role:
-                yield f"its study {verb} '{name}', which it does not hold"
+                yield f"its study {verb} '{name}', which it does not contain"
 
 
 def _table(tables: Any, key: str) -> dict[str, Any]:

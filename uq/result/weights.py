@@ -257,7 +257,7 @@ def _round_faults(ds: xr.Dataset) -> Iterator[str]:
 def _shape_fault(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> str:
     if name not in ds.variables or ds[name].dims != dims:
         return f"'{name}' is not of the dimensions {', '.join(dims)}"
-    return "" if ds[name].dtype.kind == "f" else f"'{name}' does not hold numbers"
+    return "" if ds[name].dtype.kind == "f" else f"'{name}' does not contain numbers"
 
 
 def _are_weights(values: Any) -> bool:

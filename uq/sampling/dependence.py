@@ -66,9 +66,9 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> InputFault | None:
     for i, j in np.ndindex(k, k):
         value, problem = ranks[i][j], ""
         if i == j and value != 1:
-            problem = f"must be 1: that of '{names[i]}' with itself"
+            problem = f"must be 1: the correlation of '{names[i]}' with itself"
         elif i != j and not abs(value) <= 1 - _NEAREST:
-            problem = f"must lie between -1 and 1, {_NEAREST:g} or more from both; for 1 use equals"
+            problem = f"must be between -1 and 1, {_NEAREST:g} or more from both; for 1 use equals"
         elif value != ranks[j][i]:
             problem = f"must be the same as [{j}][{i}] = {ranks[j][i]!r}"
         if problem:
@@ -136,8 +136,8 @@ def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
     if corrections:
         _, i, j, low, high = min(corrections)
         between = f"between {low:.3f} and {high:.3f}"
-        which = f"that of '{names[i]}' with '{names[j]}', {ranks[i][j]!r},"
-        return f"given the others, {which} must lie {between}"
+        which = f"the correlation of '{names[i]}' with '{names[j]}', {ranks[i][j]!r},"
+        return f"given the others, {which} must be {between}"
     return f"multiply all but the diagonal by {_most(ranks):.2f} or less"
 
 

@@ -45,7 +45,7 @@ def parameter_problem(model: Model, name: str, value: Any) -> str | None:
     parameter = model.parameter(name)
     low, high = parameter.bounds
     if not low <= value <= high:
-        return f"must lie within {bounds_of(parameter)}"
+        return f"must be within {bounds_of(parameter)}"
     return None
 
 

@@ -232,7 +232,7 @@ def law_problem(law: Law, parameter: Parameter) -> InputFault | None:
     for argument in ("mean", "median", "mode"):
         value = getattr(law, argument, None)
         if value is not None and not low <= value <= high and not cut:
-            return InputFault((argument,), f"must lie within {bounds}", value)
+            return InputFault((argument,), f"must be within {bounds}", value)
     if isinstance(law, Listed) and law.between(*map(float, _tightened(law, low, high))) is None:
         return InputFault((), f"has no value within {bounds}")
     outside = outside_share(law, low, high)
@@ -274,10 +274,10 @@ def outside_share(law: Law, low: Any, high: Any) -> Any:
 
 def _remedy(law: Law) -> str:
     if law.truncate is not None:
-        return f"truncate = [{law.truncate[0]!r}, {law.truncate[1]!r}] must lie within them"
+        return f"truncate = [{law.truncate[0]!r}, {law.truncate[1]!r}] must be within them"
     lower, upper = (getattr(law, end, None) for end in ("lower", "upper"))
     if lower is not None and upper is not None and not law.discrete:
-        return f"lower = {lower!r} and upper = {upper!r} must lie within them"
+        return f"lower = {lower!r} and upper = {upper!r} must be within them"
     if isinstance(law, Normal):
         return "use a truncated-normal with lower and upper within them, or other numbers"
     return "add truncate = [lower, upper] within them, or use other numbers"

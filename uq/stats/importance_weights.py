@@ -177,7 +177,7 @@ def largest_shape(rows: int) -> float:
 
 
 HOPELESS = (
-    "too few rows lie where the other laws do; run them as a study of their own, or with many"
+    "too few rows are in the range of the other laws; run these as a separate study, or with many"
     " times the rows"
 )
 
@@ -189,17 +189,17 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
         return ""
     if most == -inf:
         parts = "part" if rows == 1 else "parts"
-        return f"weights rest on {rows} independent {parts}, and more than 10 are needed"
+        return f"weights come from {rows} independent {parts}, and more than 10 are needed"
     if k < DOUBTFUL:
         needed = max(ceil(10 ** (1 / (1 - max(k, 0.0)))), rows + 1)
         return (
-            f"this takes about {needed} samples instead of {rows}"
+            f"about {needed} samples are required instead of {rows}"
             f" (Pareto k {k:.2f}, limit {most:.2f})"
         )
     if k == inf:
         return (
-            f"fewer than {_FEWEST} samples have weight there: it takes {2 * rows} samples or more"
-            f" instead of {rows}"
+            f"fewer than {_FEWEST} samples have weight there: at least {2 * rows} samples are"
+            f" required instead of {rows}"
         )
     return f"{hopeless} (Pareto k {k:.2f})"
 

@@ -160,7 +160,7 @@ def moments(
         no_mean = f"heavy tail: {_seen(tail)}; with k above 1 there is no mean{_REMEDY}"
     if not no_sd and replicate is None and 1 < len(values) < ENOUGH_ROWS:
         if not is_constant(values):
-            no_sd = f"needs {ENOUGH_ROWS} rows: fewer seldom show how far the tails reach"
+            no_sd = f"{ENOUGH_ROWS} rows are required to estimate the tails"
     if len(values) == 1:
         no_mean = no_sd = ONE_ROW
     mean = float(values[0] if np.ptp(values) == 0 else values.mean())  # no rounding if all equal

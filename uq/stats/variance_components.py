@@ -22,7 +22,7 @@ FARTHEST = 2.0
 squared share of this sample in the squared influences. Without such samples the scatter is
 underestimated (measured)."""
 
-FEW = f"needs {FEWEST_SAMPLES} samples to judge its scatter"
+FEW = f"{FEWEST_SAMPLES} samples are required to estimate its scatter"
 ALL_SAME = "all values are the same"
 TOO_FEW_ROWS = "fewer than two rows have a value"
 TOO_FEW = "fewer than two samples have values in two units, and in two repeats of one"

@@ -123,15 +123,15 @@ class StudyTable(_Table):
 
 
 class Until(_Table):
-    """What must be known how well for a run to stop before its budget is spent."""
+    """The precision at which a run stops before its budget is spent."""
 
     output: str = Field(description="an output, all its elements, or one element of it")
     half_width: Annotated[Quantity, AfterValidator(_positive)] = Field(
         description='of the interval, in the estimate\'s unit, or text with its own: "2 days"',
         json_schema_extra={"exclusiveMinimum": 0},
     )
-    above: Quantity | None = Field(None, description="of the probability of lying above this")
-    below: Quantity | None = Field(None, description="of the probability of lying below this")
+    above: Quantity | None = Field(None, description="of the probability of exceeding this")
+    below: Quantity | None = Field(None, description="of the probability of staying below this")
     quantile: Share | None = Field(None, description="of this quantile; if nothing, of the mean")
     b_life: Annotated[str, AfterValidator(_share_ended)] | None = Field(
         None,
@@ -218,7 +218,8 @@ class DesignTable(_Table):
         " they then feed what a monte-carlo sample feeds",
     )
     until: Until | None = Field(
-        None, description="stop as soon as this is known well enough; samples is then the budget"
+        None,
+        description="stop as soon as this estimate is precise enough; samples is then the budget",
     )
 
     @property
@@ -238,7 +239,7 @@ class Tied(_Table):
     equals: str = Field(description="another uncertain parameter, which has a law of its own")
     source: str = Field("", description="why they are the same; shown in every result")
     level: Level | None = Field(
-        None, description="that of the other parameter", json_schema_extra=LEVEL_SCHEMA
+        None, description="the level of the other parameter", json_schema_extra=LEVEL_SCHEMA
     )
 
 
@@ -318,7 +319,7 @@ class AnalysisTable(_Table):
     joint_bounds: dict[str, Literal["lower", "upper", "both"]] = Field(
         {},
         description='output = "lower", "upper" or "both": bounds that hold for all of these outputs'
-        " at once, with the coverage and confidence of `tolerance` (0.95 if not given),"
+        " simultaneously, with the coverage and confidence of `tolerance` (0.95 if not given),"
         " monte-carlo only",
     )
     thresholds: dict[
@@ -330,8 +331,8 @@ class AnalysisTable(_Table):
         ],
     ] = Field(
         {},
-        description="output = t: probability of lying above and below t, a number in the unit of"
-        ' the output, or text with its own: "24 hours"',
+        description="output = t: probability of exceeding and of staying below t, a number in the"
+        ' unit of the output, or text with its own: "24 hours"',
     )
     wanted: dict[str, Literal["above", "below"]] = Field(
         {},
@@ -353,7 +354,7 @@ class AnalysisTable(_Table):
 
 
 class StudyFile(_Table):
-    """A study: which model, which inputs vary how, which rows, what is made of them."""
+    """A study: model, laws of inputs, design and analysis."""
 
     study: StudyTable
     design: DesignTable

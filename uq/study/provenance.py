@@ -27,7 +27,7 @@ def versions() -> dict[str, str]:
 
 
 def differences(wanted: Mapping[str, str]) -> str:
-    """Return the differences between required versions and those of this process; "" if none.
+    """Return the differences between the required and the installed versions; "" if none.
 
     Parameters
     ----------

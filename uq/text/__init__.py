@@ -3,7 +3,7 @@
 Reading order; each part imports only those above it:
 
     element_names  names of the elements of an output with dimensions
-    keys           keys of numbers: the path in the JSON of a verb
+    keys           keys of numbers
     literals       TOML literals: reading and writing of values, and text safe for a terminal
     units          readable units of quantities, and symbols of formulas, as text
     quantities     parser of quantities with units: ``24 hours``, ``12 degrees``, ``30 mm/s``

@@ -1,4 +1,4 @@
-"""The tip within a phase, and how long it is certain to stay away from a stop.
+"""Bounds of the tip within a phase: a time during which it cannot reach a stop.
 
 Between events the beam is linear and the tip a sum of exponentials, none of which grows:
 

@@ -188,7 +188,7 @@ def _tuning(params: Params, settings: Settings) -> Tuning:
 
 
 def _first_state(params: Params, tuning: Tuning, state: ArrayLike | None) -> Array:
-    """Return the given state, or that of the parameters."""
+    """Return the given state, or the initial state of the parameters."""
     if state is not None:
         given = np.asarray(state, float)
         if given.shape != (tuning.size,):

@@ -1,4 +1,4 @@
-"""The layout of a state in lanes: y and r of each of m modes, then what the modes share.
+"""Layout of a state in lanes: y and r of each of m modes, then the variables common to all.
 
 From column 2 m on these are the penetration P in initial gaps, the tip's displacement X1, the
 displacement X2 one step before, and the clock. A tangent has no clock.

@@ -55,7 +55,7 @@ def _in_half_steps(system: System, state: Array, fine: System) -> Array:
 
 @kernel
 def _refine(frequency, decay, gain, moving, step, velocity, state, out):
-    """Set `out` to the state in half steps; `velocity` is that of the tip without contact."""
+    """Set `out` to the state in half steps; `velocity` is the tip velocity without contact."""
     m, size = modes_of(state), modes_of(out)
     for n in range(len(state)):
         p = state[n, 2 * m + P]

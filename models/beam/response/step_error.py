@@ -14,7 +14,7 @@ _SEGMENTS = 16  # of the look at a beam that leaves its orbit
 def add_step_error(
     propagator: Propagator, system: System, state: Array, gaps: Array, out: Response
 ) -> None:
-    """Replace orbits by those of half the step; the difference is their error.
+    """Replace orbits by orbits at half the step; the difference is their error.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ def grown_in(part, before, after):
 
 @inlined
 def note_depths(i, life, out, time, growth, rate):
-    """Record how far beam i has worn at the instants of a time in which its gaps grow."""
+    """Record the worn depths of beam i at the instants within a period of gap growth."""
     silent = rate[0] <= 0 and rate[1] <= 0
     for site in range(2):
         if silent and growth[site] > 0:
@@ -53,7 +53,7 @@ def _until_silent(i, life, site, growth):
 
 
 def note_later_depths(life, out):
-    """Record how far n beams have worn at the instants after the end of their lives."""
+    """Record the worn depths of n beams at the instants after the end of their lives."""
     worn = np.where(out.ended[:, None], life.grown - life.excess, np.nan)
     last = np.maximum(life.grown, life.growths[:, -1:])
     worn = np.where(out.reached[:, :, -1], last, worn)

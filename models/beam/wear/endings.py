@@ -21,7 +21,7 @@ def is_extinct(i, life, rate, grown):
 
 @inlined
 def was_last(i, life, out, now, grown):
-    """Return whether wear ended within a step, and no growth to reach lies within it."""
+    """Return whether wear ended within a step, and no growth to reach is within it."""
     if not is_extinct(i, life, now, grown):
         return False
     for s in range(2):

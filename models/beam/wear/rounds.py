@@ -1,4 +1,4 @@
-"""What each beam does in the next round of periods, and what the round has shown."""
+"""Plan of each beam for the next round of periods, and evaluation of the round."""
 
 import numpy as np
 

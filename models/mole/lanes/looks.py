@@ -1,4 +1,4 @@
-"""Looks along the series of a step: how far it may go, and whether a guard falls through zero.
+"""Evaluation of the series of a step: its admissible length, and guards that fall through zero.
 
 A guard is positive while its part of the mode lasts: the distance to the stop; the slip velocity of
 an interface in its direction, or the friction limit less the force required for sticking.
@@ -27,7 +27,7 @@ _LENGTH = 1 / (LOOKS - 1)  # between two looks, of a step
 
 @lean
 def limit_step(m, w):
-    """Choose how far each lane's step may go, and the step that its next series shall have."""
+    """Choose the admissible length of each lane's step, and the step of its next series."""
     last = ORDER * LANES
     for lane in range(LANES):
         error = 0.0

@@ -16,7 +16,7 @@ drifts past a cycle returns to within 1e-8 where it hardly depends on its past, 
 
 @lean
 def _repetition(lane, q, m, y, ring):
-    """Return after how many common periods the motion repeats, 0 if it does not.
+    """Return the number of common periods after which the motion repeats, 0 if it does not.
 
     Current and voltage may return with opposite sign: only their squares act on the bar.
     """

@@ -73,7 +73,7 @@ class Response(NamedTuple):
             mine[rows] = new
 
     def note(self, rows: Counts, batch: int, record: Array) -> None:
-        """Add what a run of some moles measured."""
+        """Add the measurements of a run of several moles."""
         self.progress[rows, batch] += record[:, PROGRESS]
         self.impact[rows, batch] += record[:, IMPACT]
         self.electric[rows, batch] += record[:, ELECTRIC]

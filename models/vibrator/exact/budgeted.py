@@ -37,7 +37,7 @@ class Machine:
 
     @property
     def is_extended(self) -> bool:
-        """Whether the state is that of `models.vibrator.equations.general`."""
+        """Whether the state belongs to `models.vibrator.equations.general`."""
         return self.degrees == general.DEGREES
 
     @property
@@ -46,7 +46,7 @@ class Machine:
         return len(self.scales) // 2
 
     def rides(self, state: NDArray[np.float64]) -> bool:
-        """Whether the feed lies on the deck."""
+        """Whether the feed is in contact with the deck."""
         return not self.is_extended or state[HEIGHT] == 0 == state[self.degrees + HEIGHT]
 
     def free(self, riding: bool) -> NDArray[np.intp]:

@@ -72,7 +72,7 @@ def move(c, at, time, steps, mirror, turn, image, work):
 
 @kernel
 def _advance(step, at, time, last, turn):
-    """Take the step of each lane that is still going; return how many go on.
+    """Take the step of each lane that is still going; return the number that continue.
 
     `last` holds the length of the last step, 0 once close, and NaN once given up.
     """

@@ -63,7 +63,7 @@ SUPPORTS = _SUPPORTS * LANES
 
 @kernel
 def support(c, h, out):
-    """Set what derivatives at all stages share.
+    """Set the quantities common to the derivatives at all stages.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ def prepared(p: Rows) -> Machines:
 
 
 def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], Machines]]:
-    """Prepare those of n machines that lanes can follow, all in one group."""
+    """Prepare the machines that lanes can follow, all in one group."""
     rows = np.flatnonzero(follows(p, settings))
     yield rows, prepared(Params._make(field[rows] for field in p))
 

@@ -34,7 +34,7 @@ def _entry(w, o, row):
 
 @kernel
 def _square(a, square, out, next_square, trace):
-    """Set `out` to the square of a over that of its norm, and find its squared norm and trace."""
+    """Set `out` to the square of a over its squared norm, and find its squared norm and trace."""
     for lane in range(LANES):
         next_square[lane] = trace[lane] = 0.0
     for i in range(COLUMNS):
@@ -92,7 +92,7 @@ def _larger(trace, next_trace):
 
 @kernel
 def _settle(k, squares, traces, level, radius):
-    """Note the spectral radius of the k-th power where two estimates agree; return how many do not.
+    """Store the spectral radius of the k-th power if two estimates agree; count the others.
 
     If a third eigenvalue contributed, the estimate of the next power would not be the square.
     """

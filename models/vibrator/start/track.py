@@ -69,7 +69,7 @@ class Track:
         return self.count * self.interval
 
     def last(self, intervals: int = 0) -> NDArray[np.float64]:
-        """Return the states at both ends of the last intervals; 0 for those of the last second."""
+        """Return the states at both ends of the last intervals; 0 for the last second."""
         wanted = (intervals or self._second) + 1
         first, available = len(self._parts), 0
         while first and available < wanted:

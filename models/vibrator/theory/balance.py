@@ -98,7 +98,7 @@ def kloss(drive, w):
 
 @kernel
 def torque(drive, w):
-    """Return T_i, the torque of a motor less that of its bearings (eq 22)."""
+    """Return T_i, the torque of a motor less its bearing torque (eq 22)."""
     return kloss(drive, w) - drive.bearing * w * w
 
 

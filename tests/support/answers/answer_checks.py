@@ -10,6 +10,7 @@ from answer_whole_checks import denied_enough, denied_levels, denied_mixing
 from answered import numbers_in
 from scipy.stats import binomtest
 
+from uq.assess.answer.repeat_interval import OPENING
 from uq.assess.findings import Findings
 from uq.result.elements import independent_rows, labels, named_elements, replicates_of
 from uq.result.result import Result
@@ -76,7 +77,7 @@ class Checker:
         if quantity.promise is None or not quantity.promise.sentence:
             return
         text, values = quantity.promise.sentence, self.defined_values(quantity)
-        piles = r"([\d.]+) % of the rows share the (largest|smallest) value, (\S+)"
+        piles = r"([\d.]+) % of the rows have the (largest|smallest) value, ([^\s:]+)"
         for share, which, last in re.findall(piles, text):
             end = values.max() if which == "largest" else values.min()
             there = 100 * (values == end).mean()
@@ -106,7 +107,7 @@ class Checker:
                     quantity.range.high.value - quantity.range.low.value
                 ) / quantity.range.unit.per
                 if not 0 <= outwards < spread / 3:
-                    yield f"cautious: {part}"
+                    yield f"conservative: {part}"
 
     def own_error(self, quantity):
         """Move each row by its error: the bound keeps its rank, and quantiles their share."""
@@ -117,7 +118,7 @@ class Checker:
             self.rows, f"{quantity.output}_error{quantity.name[len(quantity.output) :]}"
         )
         sizes, per = np.abs(error.values), quantity.promise.unit.per
-        moved = re.findall(r"would be (\S+)(?:.*? and (\S+))?", sentence.split(". ")[0])
+        moved = re.findall(r"gives (\S+)(?:.*? and (\S+))?", sentence.split(". ")[0])
         shown = [float(each.rstrip(".")) for each in (moved[0] if moved else ()) if each]
         lower = np.sort(values - sizes), quantity.promise.lower, -1
         upper = np.sort(values + sizes), quantity.promise.upper, 1
@@ -155,7 +156,7 @@ class Checker:
             places = {}
         yield from self.never(quantity, text)
         missing = 100 * np.isnan(self.values(quantity)[~failed(self.rows)]).mean()
-        match = re.search(r"(\S+) % of the rows have none", text)
+        match = re.search(r"(\S+) % of the rows have no value", text)
         if abs((float(match[1]) if match else 0.0) - missing) > 0.06:
             yield text
         for p, value in places.items():
@@ -170,7 +171,7 @@ class Checker:
             ends = [100 * never.mean(), 100 * exact.low, 100 * exact.high]
             if not np.allclose([float(each) for each in match.groups()], ends, atol=1.5):
                 yield text
-        elif match := re.search(r"at most (\S+) % never", text):
+        elif match := re.search(r"at most (\S+) % (?:survive|never)", text):
             bound = 100 * (1 - 0.025 ** (1 / len(never)))
             if never.any() or not 0.98 * bound <= float(match[1]) <= 1.6 * bound:
                 yield text
@@ -180,7 +181,7 @@ class Checker:
         prediction, is_share = quantity.repeated, quantity.first is not None
         if "expected" not in prediction.members:
             return
-        shown = numbers_in(prediction.sentence.removeprefix("With another seed, "))
+        shown = numbers_in(prediction.sentence.removeprefix(OPENING))
         if is_share:
             numbers, per = np.nan_to_num(self.hits(quantity, quantity.first)).astype(float), 100
             estimate = np.mean

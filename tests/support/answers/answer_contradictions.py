@@ -22,14 +22,14 @@ def denied_by_each_other(conclusions):
             flat = event.ranking is not None and event.ranking.denies_a_leader
             if flat and advice.rule == "tighten" and event.predicate in advice.text:
                 yield f"{event.decided_by} {advice.text}"
-            if advice.rule == "measure" and f"how many {event.predicate}" in advice.text:
+            if advice.rule == "measure" and f"the share that {event.predicate}" in advice.text:
                 named = event.ranking and event.ranking.leader and event.ranking.leader.inputs
                 if not set(advice.inputs) <= set(named or ()):
                     yield f"{event.decided_by} {advice.text}"
     leader = f"({lead.words})"
     for text in texts:
         alone = len(conclusions.quantities) == 1
-        if "which inputs matter is not settled" in text and (leader in text or alone):
+        if "the ranking of the inputs is not settled" in text and (leader in text or alone):
             if lead.ranking is not None and lead.ranking.leader is not None:
                 yield f"{lead.ranking.sentence} {text}"
 

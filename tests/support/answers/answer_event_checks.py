@@ -13,7 +13,7 @@ from uq.result.result_file import failed
 
 def denied_event(rows, event, hits):
     """Count how often it happens, everywhere, and where it does least and most."""
-    if not event.sentence or "not known" in event.sentence:
+    if not event.sentence or "cannot be estimated" in event.sentence:
         return
     shown = numbers_in(event.sentence)
     share = 100 * np.nan_to_num(hits).mean()
@@ -32,7 +32,7 @@ def denied_event(rows, event, hits):
         yield event.sentence
     if event.curve is not None:
         x = rows[event.over].values / event.over_unit.per
-        pattern = r"([\d.]+) % where it is (above|below|between) (\S+)(?: and (\S+))?"
+        pattern = r"([\d.]+) % (above|below|between) (\S+)(?: and (\S+))?"
         for percent, side, first, last in re.findall(pattern, event.decided_by):
             first, last = (float(end.rstrip(".")) if end else np.nan for end in (first, last))
             inside = {
@@ -51,7 +51,7 @@ def _denied_limit(event, x, hits):
     if event.limit is None or event.limit.why:
         return
     few, share, *place = re.fullmatch(
-        r"With 95 % confidence, (fewer|more) than (\S+) % .* where .* is"
+        r"With 95 % confidence, (fewer|more) than (\S+) % .* if .* is"
         r" (?:at (least|most) ([\d.e-]+)|between ([\d.e-]+) and ([\d.e-]+))\D*\.",
         event.limited,
     ).groups()
@@ -107,7 +107,9 @@ def denied_advice(ds, advice, conclusions):
             yield f"before: {each.sentence}"
         yield from _denied_law(ds, each)
     told = (
-        re.findall(r"The (\w+) end of the interval of the (\S+) % quantile", advice.sure.promised)
+        re.findall(
+            r"The (\w+) end of the 95 % interval of the (\S+) % quantile", advice.sure.promised
+        )
         if advice.sure
         else [("lower", "5")]
     )
@@ -169,11 +171,11 @@ def _denied_besides(ds, advice, lead):
         if not 0 <= away * (bound - fresh) <= 0.01 * abs(fresh) or away * (bound - value) < 0:
             yield f"{sure.promised} {fresh}"
     for each in advice.harmed:
-        then = numbers_in(re.split(" to |: ", each.besides, maxsplit=1)[1])
+        then = numbers_in(re.split(r" would \w+ to ", each.besides)[1])
         document, per = uq.trace(ds, each.key), 100 if each.is_share else 1 / each.unit.per
         first = _before(lead, each) * per
         fresh = [document[name] * per for name in ("value", "low", "high")]
-        is_more = "rise" in each.besides or "more would" in each.besides
+        is_more = "would rise" in each.besides
         if is_more != (then[0] > first) or (then[0] > first) == each.wants_more:
             yield each.besides
         if (

@@ -1,5 +1,7 @@
 """What is wrong with what an answer says of levels and of its rows: the rows deny it."""
 
+import re
+
 import numpy as np
 from answered import numbers_in
 from scipy.stats import binomtest
@@ -14,7 +16,7 @@ def denied_levels(ds, conclusions):
         return
     shares = uq.levels(ds)["share"].sel(output=levels.target)
     computed_shares = [100 * float(shares.sel(level=level.name)) for level in levels.levels]
-    shown = numbers_in(levels.sentence.split(": ", 1)[1])[::3]
+    shown = [float(share) for share in re.findall(r"([\d.]+) % \(", levels.sentence)]
     if not np.allclose(shown, computed_shares, atol=0.06):
         yield levels.sentence
     several = [level.share for level in levels.levels]

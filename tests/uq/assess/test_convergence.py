@@ -108,6 +108,6 @@ def test_the_verdict_comes_first_also_of_one_output(uq, folder):
     whole_files.write(with_output(ds, "y_error", np.full(64, 9.0)), folder / "out.nc")
     for arguments in ((), ("--output", "y")):
         first, *_ = uq("convergence", "out.nc", *arguments).out.splitlines()
-        assert first.startswith("Not enough rows: ")
+        assert first.startswith("More rows needed: ")
         words = " ".join(uq("convergence", "out.nc", *arguments).out.split())
         assert words.index("more rows do not help") < words.index("samples mean")

@@ -63,7 +63,7 @@ def test_inputs_that_distinguish_the_earliest_rows_are_named_with_direction_and_
         np.median(ds[name].values[rows]) for name in ("x4", "x1") for rows in (first, others)
     ]
     numbers = re.search(
-        r"The earliest 5 % \(50 rows\) have a higher x4 \(median ([\d.]+) against ([\d.]+) of the"
+        r"The earliest 5 % \(50 rows\) have a higher x4 \(median ([\d.]+) against ([\d.]+) for the"
         r" others\) and a lower x1 \(median ([\d.]+) against ([\d.]+)\)\.",
         earliest.sentence,
     )
@@ -89,7 +89,7 @@ def test_where_no_input_differs_the_answer_says_so():
     lives = np.random.default_rng(5).uniform(1, 9, 400)
     earliest = answer(with_lives(lives)).lead.earliest
     assert earliest.sentence == (
-        "No input distinguishes the earliest 5 % (20 rows) measurably from the others."
+        "No input differs measurably between the earliest 5 % (20 rows) and the others."
     )
 
 
@@ -143,7 +143,7 @@ def test_the_regime_of_the_earliest_rows_is_named():
     )
     earliest = answer(ds).lead.earliest
     assert earliest.sentence.endswith(
-        f"100 % (83.2 to 100 %) of them are fast, of all rows {100 * fast.mean():.1f} %."
+        f"100 % (83.2 to 100 %) of them are fast, against {100 * fast.mean():.1f} % of all rows."
     )
 
 
@@ -157,8 +157,8 @@ def test_the_regime_of_most_of_the_earliest_rows_is_named_where_all_rows_are_in_
     of_first = (ds["regime"].values[first] == 1).mean()
     assert most.label == ("fast" if of_first > 0.5 else "slow")
     assert most.share.value == max(of_first, 1 - of_first)
-    assert f"are {most.label}, of all rows {100 * most.overall:.1f} %" in earliest.sentence
-    assert earliest.sentence.endswith("%: chance may explain the difference.")
+    assert f"are {most.label}, against {100 * most.overall:.1f} % of all rows" in earliest.sentence
+    assert earliest.sentence.endswith(": the difference is not significant.")
 
 
 def test_equal_values_share_their_rank():
@@ -176,7 +176,7 @@ def test_page_terminal_and_json_say_the_same():
     conclusions = answer(ds)
     lead_rows = conclusions.lead.earliest
     html = str(fragment(conclusions))
-    assert "What ends first" in html and lead_rows.command in html
+    assert "Earliest failures" in html and lead_rows.command in html
     assert lead_rows.sentence in repr(conclusions) and lead_rows.first in repr(conclusions)
     plain = conclude(Findings(Result(ds))).fact.json["quantities"]["life"]["earliest"]
     assert (

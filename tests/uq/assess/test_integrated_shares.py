@@ -131,7 +131,8 @@ def test_what_to_set_is_possible_in_the_design(method, change):
         for level in (OWN, SHARED)
     }
     assert reason.startswith(
-        f"a single unit cannot show what is shared and what is own; set units = 2{change}"
+        f"one unit per sample cannot separate shared inputs from differences between units; set"
+        f" units = 2{change}"
     )
     with pytest.raises(InputError, match=rf"in \[design\] set units = 9{change}"):
         fleet_of(Result(ds), 9, plain=True)

@@ -85,7 +85,7 @@ def test_a_goal_out_of_reach_is_said_once_at_the_first_look_and_at_the_end(tmp_p
     half = stopping.interim_estimate(of.design, Result(ds)).half_width
     assert needed == pytest.approx(2048 * (half / 1e-9) ** 2, rel=0.5)
     (note,) = summarised(ds)["notes"]
-    assert "was not reached: by the scatter of all rows it needs about " in note
+    assert "was not reached: from the scatter of all rows, about " in note
 
 
 def test_a_goal_within_reach_is_not_called_out_of_reach(tmp_path):

@@ -116,20 +116,20 @@ def test_bounds_that_lack_rows_are_not_settled():
         "analysis": {"joint_bounds": {"y": "both"}, "max_failed": 0.2},
     }
     few = Findings(Result(computed(study_of(tables))))
-    sentence = "the joint bounds that the study asks for need 93 rows"
-    assert f"Not enough rows: {sentence}; about 93 rows in all would settle it." in verdict(few)
+    sentence = "the requested joint bounds require 93 rows"
+    assert f"More rows needed: {sentence}; about 93 rows in total would settle it." in verdict(few)
     failing = computed(study_of(tables | {"settings": {"fail_above": 0.9}}))
     assert failed(failing).mean() > 0.05  # as many rows as may lie outside
     joint = summarised(failing)["outputs"]["y"]["joint_bounds"]
     assert joint == {"lower": None, "upper": None, "rows_needed": None}
     assert np.isnan(uq.summary(failing)["joint_rows_needed"].item())
     findings = Findings(Result(failing))
-    sentence = "oo many rows failed for the joint bounds that the study asks for"
+    sentence = "oo many rows failed for the requested joint bounds"
     assert f"T{sentence}. More rows would not help." in verdict(findings)
     advice = {remedy.rule: remedy.text for remedy in conclude(findings).advice}
     assert f"t{sentence}" in advice["failed"] and "joint" not in advice.get("rows", "")
     why = quantities(findings)[0].promise.basis
-    assert "of the rows failed, and count as lying beyond it" in why
+    assert "of the rows failed and count as beyond it" in why
 
 
 @pytest.mark.parametrize(
@@ -163,11 +163,11 @@ def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     work, angle = promises["work[side=left]"], promises["angle"]
     assert work.upper == bounds["work[side=left]"]["joint_bounds"]["upper"] and np.isnan(work.lower)
     assert work.upper > bounds["work[side=left]"]["quantiles"]["0.95"]["value"]
-    words = r"With 95 % confidence, at least 95 % stay below .*, within the joint bounds of work, "
-    assert re.fullmatch(words + "angle.", work.sentence)
+    words = r"With 95 % confidence, at least 95 % of values are below .*, within the joint bounds"
+    assert re.fullmatch(words + " of work, angle.", work.sentence)
     assert angle.lower == bounds["angle"]["joint_bounds"]["lower"] < angle.upper
-    assert "% of the defined values stay above " in angle.sentence
-    assert " and stay below " in angle.sentence
+    assert "% of defined values are above " in angle.sentence
+    assert " and are below " in angle.sentence
     # An output that the study does not name keeps a bound of its own.
     assert not promises["life[side=left,depth=0.5]"].joint
     promise = conclude(Findings(Result(ds))).fact.json["quantities"]["work[side=left]"]["promise"]
@@ -180,7 +180,7 @@ def test_joint_bounds_that_lack_rows_are_not_replaced_by_single_ones():
         quantity for quantity in quantities(Findings(Result(ds))) if quantity.output == "work"
     ).promise
     assert np.isnan(promise.upper) and "With 95 % confidence" not in promise.sentence
-    assert promise.basis.startswith("No joint tolerance bound: it needs 93 rows.")
+    assert promise.basis.startswith("No joint tolerance bound: 93 rows are required.")
 
 
 def test_both_joint_bounds_of_one_output_are_one_sentence():
@@ -191,5 +191,5 @@ def test_both_joint_bounds_of_one_output_are_one_sentence():
         "analysis": {"joint_bounds": {"y": "both"}},
     }
     (quantity,) = quantities(Findings(Result(computed(study_of(tables)))))
-    words = r"With 95 % confidence, at least 95 % stay above \S+ and stay below \S+\."
+    words = r"With 95 % confidence, at least 95 % of values are above \S+ and are below \S+\."
     assert re.fullmatch(words, quantity.promise.sentence), quantity.promise.sentence

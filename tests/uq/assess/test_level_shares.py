@@ -23,7 +23,7 @@ def test_shares_of_the_linear_function():
         assert share.value == pytest.approx(variance / 14, abs=0.02)
         assert share.low < share.value < share.high < share.low + 0.08
     assert sum(entry.shares[level].value for level in VARIANCES) == pytest.approx(1.0)
-    assert entry.shares["solver"].reason == "the model states no numerical error of it"
+    assert entry.shares["solver"].reason == "the model states no numerical error for it"
 
 
 def test_the_solver_has_the_share_of_its_stated_error():
@@ -57,7 +57,7 @@ def test_a_heavy_tail_is_replaced_and_the_note_promises_nothing_else():
     heavy = with_output(ds, "w", np.exp(12 * ds["y"].values))
     (name, entry), *_ = by_level(Result(heavy), "w").outputs.items()
     assert name == "log(w)"
-    assert entry.sentences[0].endswith(": these are shares of the variance of its logarithm")
+    assert entry.sentences[0].endswith(": shares are of the variance of the logarithm")
 
 
 def test_a_random_model_differs_by_chance():

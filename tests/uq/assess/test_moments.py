@@ -194,4 +194,4 @@ def test_too_few_independent_rows_give_no_interval_of_the_standard_deviation():
     values = np.random.default_rng(1).normal(size=200)
     assert moments(values).sd.has_interval
     few = moments(values[:199]).sd
-    assert not few.has_interval and few.reason.startswith("needs 200 rows")
+    assert not few.has_interval and few.reason.startswith("200 rows are required")

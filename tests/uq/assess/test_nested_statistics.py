@@ -85,7 +85,7 @@ def test_what_depends_on_the_sample_alone_has_the_interval_of_the_samples():
     assert above["low"] < 0.5 < above["high"]
     assert above["high"] - above["low"] > 0.13  # Wilson's of 1200 rows is 0.056 wide
     assert any(
-        "(200 samples of 3 units, 2 repeats of each): intervals rest on samples" in note
+        "(200 samples of 3 units, 2 repeats of each): intervals are computed from samples" in note
         for note in summarised(ds)["notes"]
     )
 

@@ -39,7 +39,7 @@ def test_components_are_those_of_the_analysis_of_variance():
     shares = nested_shares(table)
     assert shares.variance == pytest.approx(sum(parts))
     assert [share.value * shares.variance for share in shares[:3]] == pytest.approx(parts)
-    assert all("needs 8 samples" in share.reason for share in shares[:3])
+    assert all("8 samples are required" in share.reason for share in shares[:3])
 
 
 def test_the_interval_is_a_jackknife_over_samples():
@@ -127,10 +127,10 @@ def test_two_levels_are_told_apart_by_what_the_rows_have(varying, shape):
 def test_one_repeat_counts_chance_as_own():
     shares = shares_of(effects((0.2, 0.3, 0.5), (3000, 4, 1)), set(VARIANCES)).shares
     assert shares[OWN].value == pytest.approx(0.8, abs=0.05)
-    assert shares[OWN].assumes == "that chance counts as own"
+    assert shares[OWN].assumes == "that differences between units include chance"
     assert np.isnan(shares[CHANCE].value)
     assert shares[CHANCE].reason == (
-        "a single repeat cannot separate chance from what is own to a unit; set repeats = 2"
+        "one repeat per unit cannot separate chance from differences between units; set repeats = 2"
     )
 
 

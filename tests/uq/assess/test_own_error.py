@@ -19,17 +19,16 @@ def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error(
     assert np.isclose(above.own_error.members["lower"], above.promise.lower - 0.2, rtol=1e-12)
     assert above.own_error.members["upper"] is None
     assert above.own_error.sentence.startswith(
-        "The bound does not allow for the rows' own numerical error: if every value were"
-        " overestimated by as much, it would be"
+        "The bound excludes numerical error; including it gives"
         f" {above.promise.unit.text(above.own_error.members['lower'], -np.inf)}."
     )
     below = answer(values_that_err(-0.2, wanted={"y": "below"})).lead
     assert np.isclose(below.own_error.members["upper"], below.promise.upper + 0.2, rtol=1e-12)
-    assert "underestimated" in below.own_error.sentence
+    worse = below.promise.unit.text(below.own_error.members["upper"], np.inf)
+    assert f"including it gives {worse}." in below.own_error.sentence
     both = answer(values_that_err(0.2)).lead.own_error.sentence
-    assert (
-        both.startswith("The bounds do not allow for") and "overestimated or underestimated" in both
-    )
+    assert both.startswith("The bounds exclude numerical error; including it gives ")
+    assert " and " in both
 
 
 def test_the_error_is_held_against_the_scatter():
@@ -49,7 +48,7 @@ def test_an_error_that_moves_no_digit_is_not_worth_a_word(size):
 def test_without_a_bound_it_is_named_whose_error_it_is():
     few = answer(values_that_err(0.5, samples=10)).lead
     assert few.promise.sentence == ""
-    assert few.own_error.sentence.startswith("The mean square of the rows' own numerical error is")
+    assert few.own_error.sentence.startswith("The mean square of numerical error is")
 
 
 def test_rows_that_all_state_nothing_are_counted():
@@ -68,7 +67,7 @@ def test_rows_that_are_not_independent_move_their_quantile():
     assert np.isclose(
         lead.own_error.members["lower"], lead.promise.quantiles[0].value - 0.2, rtol=1e-9
     )
-    assert lead.own_error.sentence.startswith("The quantile does not allow for")
+    assert lead.own_error.sentence.startswith("The quantile excludes numerical error; ")
 
 
 def a_life_that_errs(relative):
@@ -85,9 +84,9 @@ def test_errors_of_lives_are_relative_and_a_missed_accuracy_is_said():
     assert np.isclose(
         lead.own_error.members["share_of_variance"], 0.01 / np.var(np.log(ds["life"].values))
     )
-    assert "if every life were overestimated by as much" in lead.own_error.sentence
-    assert lead.own_error.sentence.endswith("100 % of the rows miss the accuracy asked for, 5 %.")
-    assert "miss" not in answer(a_life_that_errs(0.04)).lead.own_error.sentence
+    assert lead.own_error.sentence.startswith("The bound excludes numerical error; including it")
+    assert lead.own_error.sentence.endswith("100 % of the rows exceed the 5 % error target.")
+    assert "target" not in answer(a_life_that_errs(0.04)).lead.own_error.sentence
 
 
 def test_lives_without_an_end_and_rows_that_state_no_error_stay_as_they_are():

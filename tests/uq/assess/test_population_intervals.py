@@ -97,7 +97,7 @@ def test_a_quantile_with_one_end_says_how_many_rows_give_the_other(probability, 
         return populated(computed(study))[0].quantile(probability)
 
     few = of(30)
-    assert few.reason == f"no {end} end: 30 effective rows, and it needs {needed}"
+    assert few.reason == f"no {end} end: 30 effective rows, and {needed} are required"
     assert np.isnan(few.low) == (end == "lower") and np.isnan(few.high) == (end == "upper")
     assert of(needed).has_interval and not of(needed).reason
 

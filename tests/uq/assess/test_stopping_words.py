@@ -26,7 +26,7 @@ def test_an_unattained_b_life_spends_the_budget_and_says_so(tmp_path):
 @pytest.mark.parametrize(
     ("until", "more", "line"),
     [
-        ({"b_life": "B90"}, {"fixed": {"threshold": 1e-9}}, "B90 of life is never, which no"),
+        ({"b_life": "B90"}, {"fixed": {"threshold": 1e-9}}, "B90 of life is never, which has no"),
         ({}, {"fixed": {"threshold": 1e-9}}, r"mean of life has no interval \(some rows never end"),
     ],
 )
@@ -38,7 +38,9 @@ def test_a_life_that_has_no_such_number_is_announced_once(tmp_path, until, more,
         study_of(given, "exponential-wear"), tmp_path / "out.nc", workers=0, say=messages.append
     )
     (message,) = [text for text in messages if "budget" in text]
-    assert re.match(f"after 256 samples {line}.*; while that is so .* its budget of 512", message)
+    assert re.match(
+        f"after 256 samples {line}.*; the run then continues up to its budget of 512", message
+    )
 
 
 @pytest.mark.parametrize("method", ["saltelli", "shapley"])

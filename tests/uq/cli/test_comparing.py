@@ -68,4 +68,4 @@ def test_what_a_change_of_one_input_did_is_a_sentence(compared, lower, moved):
     lines = compared(study(0.0, 1.0), study(lower, lower + 0.5))
     words = " ".join(" ".join(text) for text in lines)
     assert re.search(rf"Only x1 differs \(sd 0\.28\d* to 0\.14\d*{moved}\)\.", words)
-    assert "sd of y: 0.5 times what it was" in words and "75% less variance." in words
+    assert "sd of y: 0.5 times its former value" in words and "75% less variance." in words

@@ -203,7 +203,7 @@ def test_what_is_in_the_file_is_not_computed_again(folder):
         ({"axes": {}}, "axes: nothing varies; give at least one parameter its values"),
         ({"axes": ["velocity"]}, r"axes must be a dictionary with names as keys: \['velocity'\]"),
         ({"axes": {"velocty": (0.0, 1.0, 3)}}, r"velocty.*did you mean 'velocity'\?"),
-        ({"axes": {"velocity": (0.0, 9.0, 3)}}, r"must lie within -5.0 to 5.0 \[m s-1\]"),
+        ({"axes": {"velocity": (0.0, 9.0, 3)}}, r"must be within -5.0 to 5.0 \[m s-1\]"),
         ({"axes": {"velocity": (1.0, 0.0, 3)}}, "must ascend, two finite values at least"),
         ({"axes": {"velocity": (0.0, 1.0, 1)}}, "must ascend, two finite values at least"),
         ({"axes": {"velocity": (0.0, 1.0)}}, r"must be \(first value, last value, number of"),

@@ -136,7 +136,7 @@ def test_the_row_near_a_quantile_of_lives_may_never_end():
         ({"lowest": "regime"}, "'regime' is a category, not a number"),
         ({"lowest": "work[side=lefty]"}, "did you mean 'work[side=left]'?"),
         ({"near_quantile": (0.5, "work")}, "choose one of 'work[side=left]', 'work[side=right]'"),
-        ({"near_quantile": (5.0, "angle")}, "must lie between 0 and 1; write 0.05 for 5 %"),
+        ({"near_quantile": (5.0, "angle")}, "must be between 0 and 1; write 0.05 for 5 %"),
         ({"near_quantile": (1e-6, "angle")}, "a 0.0001 % quantile needs 999999 rows"),
         ({"near_quantile": (1e-300, "angle")}, "quantile needs more than 1e+09 rows"),
     ],

@@ -118,7 +118,7 @@ def test_shares_of_a_variance_that_may_be_zero_are_refused():
     (entry,) = sensitivities(with_output(ds, "z", y > np.quantile(y, 0.9)), None, "z")[
         "outputs"
     ].values()
-    assert entry["refused"].startswith("40 paths do not tell the variance from zero")
+    assert entry["refused"].startswith("40 paths do not distinguish the variance from zero")
 
 
 def test_one_path_is_too_few_and_its_output_no_event():

@@ -150,8 +150,8 @@ def test_what_hardly_runs_on_has_no_life_left(worn):
 def test_units_that_may_be_one_are_named():
     told = [inspection(unit, "survived", 2e5) for unit in ("A 07", "a07", "A70")]
     notes = learnt(update(wear(samples=200, rate="shared", units=3), told)).notes
-    assert [note for note in notes if "taken" in note] == [
-        "Warning: 'A 07' and 'a07' are taken for two units."
+    assert [note for note in notes if "treated" in note] == [
+        "Warning: 'A 07' and 'a07' are treated as two units."
     ]
 
 

@@ -277,7 +277,9 @@ def test_strange_inspections_come_with_a_warning():
     ds = wear(rate="own", depth="shared", samples=2000, units=3)
     learned = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))
     assert learned.strangeness < 0.01
-    assert any(note.startswith("Warning: inspections as improbable") for note in learned.notes)
+    assert any(
+        note.startswith("Warning: the inspections contradict the prior") for note in learned.notes
+    )
 
 
 def test_bounded_weights_need_no_light_tail():

@@ -100,7 +100,7 @@ MISTAKES = {
     ('"deck"', '"dek"'): '[machine] template = "dek": no such file',
     ('json = "pairs.0"', ""): "give one of json, csv, netcdf and pattern",
     ("(\\S+)", "\\S+"): "pattern must have one group in parentheses, not 0",
-    ("nominal = 1.0", "nominal = 11.0"): "must lie within the bounds",
+    ("nominal = 1.0", "nominal = 11.0"): "must be within the bounds",
     ("[machine]", "[machine"): "not valid TOML",
     ("{depth}", "{depth:d}"): "Unknown format code 'd'",
     ('"{depth}"', '"deck", "{depth}"'): "write {machine_folder}/deck",

@@ -61,7 +61,7 @@ IMPOSSIBLE = {
     "an escape in a name": (lambda ds: ds.assign({"\x1b[2J": 1.0}), "control characters"),
     "an output that is asked for": (
         lambda ds: with_attribute(ds, "life", role="kept"),
-        "its study asks for 'life', which it does not hold",
+        "its study asks for 'life', which it does not contain",
     ),
     "a rerun with code": (
         lambda ds: ds.assign(
@@ -154,7 +154,7 @@ def result(write_study, folder):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda ds: ds.drop_vars("y"), "does not hold the output 'y'"),
+        (lambda ds: ds.drop_vars("y"), "does not contain the output 'y'"),
         (lambda ds: with_value(ds, "row", 10**12, -1), "does not number all rows"),
     ],
 )

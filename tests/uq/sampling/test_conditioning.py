@@ -129,7 +129,7 @@ def test_for_a_wide_normal_the_truncated_one_is_proposed():
 def test_for_a_law_with_ends_moving_them_is_proposed():
     fault = problem((100.0, 1e7), "uniform", lower=50.0, upper=200.0)
     assert "has 0.33 of its probability outside" in fault.problem
-    assert "lower = 50.0 and upper = 200.0 must lie within them" in fault.problem
+    assert "lower = 50.0 and upper = 200.0 must be within them" in fault.problem
 
 
 def test_the_line_is_drawn_at_one_in_a_million():

@@ -57,9 +57,9 @@ def test_dependent_rows_are_the_same_however_they_are_cut(cuts):
     ("ranks", "message"),
     [
         (((1.0, 0.5),), "must have 2 rows of 2 numbers"),
-        (((1.0, 0.5), (0.5, 0.9)), "must be 1: that of 'b' with itself"),
+        (((1.0, 0.5), (0.5, 0.9)), "must be 1: the correlation of 'b' with itself"),
         (((1.0, 0.5), (0.4, 1.0)), "must be the same as [1][0] = 0.4"),
-        (((1.0, 1.0), (1.0, 1.0)), "must lie between -1 and 1, 2e-09 or more from both"),
+        (((1.0, 1.0), (1.0, 1.0)), "must be between -1 and 1, 2e-09 or more from both"),
         (((1.0, -1 + 1e-10), (-1 + 1e-10, 1.0)), "between -1 and 1, 2e-09 or more from both"),
     ],
 )
@@ -77,7 +77,7 @@ def test_a_near_miss_is_answered_with_what_would_do():
     problem = matrix_problem(("a", "b", "c"), ranks)
     assert problem.problem == (
         "no inputs can have these rank correlations together; given the others,"
-        " that of 'a' with 'b', 0.9, must lie between -0.308 and 0.494"
+        " the correlation of 'a' with 'b', 0.9, must be between -0.308 and 0.494"
     )
     for entry, good in ((-0.309, False), (-0.308, True), (0.494, True), (0.495, False)):
         mended = ((1.0, entry, 0.1), (entry, 1.0, 0.9), (0.1, 0.9, 1.0))

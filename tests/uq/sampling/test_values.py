@@ -128,8 +128,8 @@ def test_settings_that_do_not_go_together_are_refused_by_the_model():
     [
         ("contact_stiffness", 1e2, None),
         ("contact_stiffness", 10_000_000, None),
-        ("contact_stiffness", -5.0, "must lie within 100.0 to 10000000.0 [N m-1]"),
-        ("contact_stiffness", nan, "must lie within 100.0 to 10000000.0 [N m-1]"),
+        ("contact_stiffness", -5.0, "must be within 100.0 to 10000000.0 [N m-1]"),
+        ("contact_stiffness", nan, "must be within 100.0 to 10000000.0 [N m-1]"),
         ("contact_stiffness", "stiff", "must be a number"),
         ("contact_stiffness", True, "must be a number"),
         (
@@ -148,9 +148,9 @@ def test_a_parameter_is_checked_against_its_declaration(name, value, problem):
     [
         (inf, None),
         (1e308, None),
-        (1e3, "must lie within 10000.0 to inf [N m-1]"),
-        (-inf, "must lie within 10000.0 to inf [N m-1]"),
-        (nan, "must lie within 10000.0 to inf [N m-1]"),
+        (1e3, "must be within 10000.0 to inf [N m-1]"),
+        (-inf, "must be within 10000.0 to inf [N m-1]"),
+        (nan, "must be within 10000.0 to inf [N m-1]"),
         (10**400, "must be a number"),
     ],
 )
@@ -159,7 +159,7 @@ def test_a_bound_at_infinity_belongs_to_what_is_admissible(value, problem):
 
 
 def test_infinity_lies_outside_finite_bounds():
-    assert parameter_problem(MOUNTED, "mass", inf) == "must lie within 0.0 to 1000.0 [kg]"
+    assert parameter_problem(MOUNTED, "mass", inf) == "must be within 0.0 to 1000.0 [kg]"
 
 
 def test_a_study_reports_what_is_wrong_with_settings_and_categories():

@@ -51,26 +51,28 @@ def advise(findings: Findings, answer: Answer) -> Iterator[Advice]:
     if answered and not enough.question and all(entry.rule in _AS_SETTLED for entry in advice):
         laws_measured = any(entry.rule == "known" for entry in advice)
         advice = [entry for entry in advice if entry.rule != "known"]  # `settled` states it
-        nothing = "Nothing else" if advice else "Nothing"
+        nothing = "Nothing else is needed" if advice else "Nothing is needed"
         noisy = any(
             (error := quantity.own_error) is not None
             and (error.members["share_of_variance"] or 0.0) >= 1
             for quantity in answered
         )
-        settled = f"what the study {'is about' if enough.besides or noisy else 'asks'} is settled"
-        settled += ", and no law that matters is an assumption" * laws_measured
+        some_open = enough.besides or noisy
+        settled = f"{'the main question' if some_open else 'all questions'} of the study"
+        settled += " is settled" if some_open else " are settled"
+        settled += ", and no influential law is assumed" * laws_measured
         advice.append(Advice("nothing", f"{nothing}: {settled}."))
     yield from advice
 
 
 def _leave_to_chance(levels: VarianceComponents | None) -> Iterator[Advice]:
-    """Yield the advice that tolerances change little, where chance is the main driver."""
+    """Yield the advice that tolerances help little, where chance is the main driver."""
     leader = None if levels is None else levels.leader
     if levels is not None and leader is not None and leader.name == CHANCE:
         yield Advice(
             "chance",
-            f"Expect little of tolerances: {leader.words} decides {levels.subject}, and differs"
-            " between repeats of one machine.",
+            f"Tighter tolerances would help little: {leader.words} {leader.explains} most of"
+            f" {levels.variance}, and every repeat of one machine differs.",
             leader.inputs,
         )
 
@@ -85,13 +87,13 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
         yield Advice(
             "failed",
             f"Fix the {counted(lost, 'failed row')} first: {why[0]};"
-            f" 'uq rerun {result.file} --failed{result.model_option}' computes failed rows again,"
-            " if necessary with other settings.",
+            f" 'uq rerun {result.file} --failed{result.model_option}' recomputes them, with other"
+            " settings if necessary.",
         )
 
 
 def _unknown(answer: Answer) -> Iterator[Advice]:
-    """Yield the advice that no sample size settles an event without an estimate."""
+    """Yield the advice that no sample size settles an event that cannot be estimated."""
     unknown = [event.sentence for event in answer.asked_events if isnan(event.share.value)]
     for text in [text for text in unknown if text][:1]:
         yield Advice("unknown", f"More rows would not help: {text[:1].lower()}{text[1:]}")
@@ -113,7 +115,7 @@ def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
         return
     marks = {name: mark_of(findings.result, name) for name in leader.sure}
     levels = findings.result.levels
-    to_what = f" to how many {event.clause}" if event else ""
+    to_what = f" for the share that {event.clause}" if event else ""
     starts = {name for name in marks if "initial" in findings.result.dataset[name].attrs}
     lasting = [
         name
@@ -126,16 +128,15 @@ def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
         is_single = len(unstated) == 1
         yield Advice(
             "source",
-            f"State how well {called_together(unstated)} {'is' if is_single else 'are'} known:"
-            f" {'it matters' if is_single else 'they matter'} most{to_what}, and no source says it"
-            " (given, inferred, fitted, assumed or chosen).",
+            f"Add a 'source' for {called_together(unstated)} (given, inferred, fitted, assumed or"
+            f" chosen): {'it matters' if is_single else 'they matter'} most{to_what}.",
             unstated,
         )
     elif not assumed and lasting:
         is_single = len(lasting) == 1
         yield Advice(
             "known",
-            f"Nothing needs to be measured first: {'the law' if is_single else 'the laws'} of"
+            f"No measurement is needed first: {'the law' if is_single else 'the laws'} of"
             f" {called_together(lasting)}, which {'matters' if is_single else 'matter'}"
             f" most{to_what}, {'is' if is_single else 'are'} not assumed.",
             tuple(lasting),
@@ -148,7 +149,7 @@ def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
     if leader.doubtful:
         matters = f"{'it' if is_single else 'they'} may matter"
     single = event is not None and event.is_of_single
-    measure = "Of single inputs, measure" if single else "Measure"
+    measure = "Among single inputs, measure" if single else "Measure"
     yield Advice(
         "measure",
         f"{measure} {words} first: {matters} most{to_what}, and"
@@ -182,18 +183,18 @@ def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
             where = f"{limit.place}: {limit.few} do there{limit.averaged}"
         yield Advice(
             "keep",
-            f"So that {'more' if more else 'fewer'} {event.predicate}, keep {called(event.over)}"
-            f" {where}.",
+            f"To {'increase' if more else 'reduce'} the share that {event.clause}, keep"
+            f" {called(event.over)} {where}.",
             (event.over,),
             key=key_of("quantities", lead.name, "events", event.name, key_name, verb="answer"),
         )
 
 
 def _add_rows(result: Result, enough: Enough) -> Iterator[Advice]:
-    """Yield the sample size that settles the subject of the study, or why intervals are missing."""
+    """Yield the required sample size, or the reason for missing intervals."""
     rows = len(result)
     if enough.unknown:
-        wanted = "know what can be promised" if result.why_no_statistics else "have intervals"
+        wanted = "obtain a bound" if result.why_no_statistics else "obtain intervals"
         yield Advice("rows", f"To {wanted}: {enough.unknown}.")
     shortfalls = [shortfall for shortfall in enough.question if isfinite(shortfall[1])]
     if not shortfalls or not rows or enough.errors is not None:

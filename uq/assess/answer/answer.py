@@ -20,7 +20,7 @@ from uq.text.numbers import capitalized
 
 
 def answer(result: AnyResult) -> Answer:
-    """Say what can be promised, what it depends on, and what to do.
+    """Return the answer of a study: tolerance bounds, main drivers, and advice.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def _levels(findings: Findings, draft: Answer) -> VarianceComponents | None:
         (first, *_) = draft.regimes
         return levels_of(findings, first.name, f"whether it is {first.predicate}", first.ranking)
     lead = draft.lead
-    return None if lead is None else levels_of(findings, lead.name, "its scatter", lead.ranking)
+    return None if lead is None else levels_of(findings, lead.name, ranking=lead.ranking)
 
 
 def ties_of(result: Result, draft: Answer) -> str:
@@ -165,13 +165,14 @@ def verdict(findings: Findings, output: str | None = None) -> list[str]:
     if not len(result):
         return []
     if enough.unknown:
-        return [f"Whether the rows are enough is not known: {enough.unknown}."]
+        return [f"Whether the sample size is sufficient cannot be assessed: {enough.unknown}."]
     if not enough.every:
-        return ["Enough rows: what the study asks is settled."] if asked else []
+        return ["Sample size is sufficient for all results of the study."] if asked else []
     lines = [
-        f"Not enough rows: {settled(clause, factor, result)}"
+        f"More rows needed: {settled(clause, factor, result)}"
         if isfinite(factor)
         else f"{sentence(clause)} More rows would not help."
         for clause, factor in enough.every
     ]
-    return lines if enough.question else ["Enough rows for what the study is about.", *lines]
+    sufficient = "Sample size is sufficient for the main question of the study."
+    return lines if enough.question else [sufficient, *lines]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from uq.assess.answer.tolerance_bound import ToleranceBound, piles
+from uq.assess.answer.tolerance_bound import FAIL, ToleranceBound, piles
 from uq.assess.answer.wording import DisplayUnit, joined, sentence
 from uq.assess.fact import Fact, Functions
 from uq.assess.integrated_inputs import elements_with_laws
@@ -91,7 +91,8 @@ def promise_of(
     if any(sides) and not any(map(isfinite, bounds)):
         reason = _why_no_bound(result, element, both, bounds)
     elif isfinite(wrong := _contradicted(bounds, ends)):
-        reason = f"counted from the rows, {unit.text(wrong)}, it lies beyond the quantile itself"
+        wrong_bound = f"the value from order statistics, {unit.text(wrong)}"
+        reason = f"{wrong_bound}, contradicts the quantile estimate"
         bounds = [nan, nan]
     return ToleranceBound(
         coverage,
@@ -117,14 +118,14 @@ def promise_of(
 
 
 def _ranks(element: Element, bounds: list[float]) -> tuple[int, int]:
-    """Return the places of bounds among the rows, failed ones beyond them; 0 without a bound."""
+    """Return the ranks of bounds among the rows, failed rows beyond them; 0 without a bound."""
     values, lower, upper = element.for_thresholds[element.present], *bounds
     first = int(element.failed.sum() + (values < lower).sum()) + 1 if isfinite(lower) else 0
     return first, int((values <= upper).sum()) if isfinite(upper) else 0
 
 
 def without_value(element: Element) -> dict[str, Any]:
-    """Return which rows have no value: whether any failed, and the share of undefined ones."""
+    """Return whether rows failed, and the share of the others without a defined value."""
     sound = ~element.failed
     undefined = float(element.undefined[sound].mean()) if sound.any() else 0.0
     return {"rows_failed": bool(element.failed.any()), "undefined": undefined}
@@ -140,7 +141,7 @@ def _recurs(element: Element) -> bool:
 
 
 def best_quantile(described: Described, p: float) -> Statistic | None:
-    """Return a requested quantile, by Kaplan-Meier where the rows alone do not decide it."""
+    """Return a requested quantile, by Kaplan-Meier if censored rows leave it open."""
     statistic = described.find("quantiles", repr(p))
     return statistic and statistic.best
 
@@ -158,13 +159,13 @@ def functions_of(statistic: Statistic | None) -> Functions:
 
 def end_verb(element: Element) -> str:
     """Return the verb for the end of a life."""
-    return "succeed" if element.declared.success else "end"
+    return "succeed" if element.declared.success else FAIL
 
 
 def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
     """Return a bound on the wrong side of its quantile; NaN if there is none.
 
-    By chance few rows give one, where the quantile is better known since lives are integrated.
+    It occurs by chance with few rows, where integrated lives estimate the quantile more precisely.
     """
     lower, upper = bounds
     if lower > ends[0].value:
@@ -194,9 +195,9 @@ def _why_no_bound(
         (statistic.rows_needed for statistic in both if statistic and statistic.rows_needed), None
     )
     if needed == inf:
-        return f"{percent(element.failed.mean())} of the rows failed, and count as lying beyond it"
+        return f"{percent(element.failed.mean())} of the rows failed and count as beyond it"
     if needed:
-        return f"it needs {needed:.0f} rows"
+        return f"{needed:.0f} rows are required"
     if any(not isnan(bound) for bound in bounds):
         return f"too few {end_verb(element)}"
     if result.has_weights:
@@ -215,7 +216,7 @@ Sides = tuple[float, float]
 def own_error_of(
     promise: ToleranceBound, described: Described, element: Element, context: Context
 ) -> Fact | None:
-    """Return the effect of the stated errors of rows on a promise; None if none is stated.
+    """Return the effect of the numerical errors of rows on a bound; None if rows state none.
 
     Parameters
     ----------
@@ -229,10 +230,11 @@ def own_error_of(
     Returns
     -------
     Fact or None
-        ``lower`` and ``upper``: the bounds if every value were wrong by its error, to the unsafe
-        side; ``share_of_variance``: the mean square of the errors as a share of the variance;
-        ``accuracy``: requested by the settings, and ``rows_missing_it``: the share of rows that
-        miss it; ``rows_stating_none``: their number. The sentence is "" if all is negligible.
+        ``lower`` and ``upper``: the bounds with each value shifted by its error to the unsafe side;
+        ``share_of_variance``: the mean square of the errors as a share of the variance;
+        ``accuracy``: requested by the settings; ``rows_missing_it``: the share of rows that exceed
+        it; ``rows_stating_none``: the number of rows without an error. The sentence is "" if all
+        are negligible.
     """
     error = stated_error(context.rows, element)
     if error is None:
@@ -254,7 +256,7 @@ def own_error_of(
     moved_bounds = _moved(promise, bounds, (worse[0], worse[1]), are_quantiles)
     text = ""
     if moved_bounds or share >= NOTABLE or unstated:
-        variance = _of_variance(share, element.is_lifetime, bool(moved_bounds))
+        variance = _of_variance(share, element.is_lifetime)
         clauses = (moved_bounds, variance, _missing(asked, missed, unstated))
         text = " ".join(sentence(clause) for clause in clauses if clause)
     numbers = {
@@ -283,18 +285,14 @@ def own_error_of(
 
 def _moved(promise: ToleranceBound, bounds: Sides, worse: Sides, are_quantiles: bool) -> str:
     """Return a clause on the new bounds, of those that change in a shown digit."""
-    noun, ways = "life" if promise.is_life else "value", ("overestimated", "underestimated")
     now, then = ([*_texts(promise.unit, ends)] for ends in (bounds, worse))
     moved = [i for i in (0, 1) if then[i] and then[i] != now[i]]
     if not moved:
         return ""
-    how = joined([ways[i] for i in moved], "or")
     bound_noun = "quantile" if are_quantiles else "bound"
-    does, it = (f"{bound_noun} does", "it") if len(moved) == 1 else (f"{bound_noun}s do", "they")
-    return (
-        f"the {does} not allow for the rows' own numerical error: if every {noun} were {how}"
-        f" by as much, {it} would be {joined([then[i] for i in moved])}"
-    )
+    excludes = f"{bound_noun} excludes" if len(moved) == 1 else f"{bound_noun}s exclude"
+    then_moved = joined([then[i] for i in moved])
+    return f"the {excludes} numerical error; including it gives {then_moved}"
 
 
 def _texts(unit: DisplayUnit, ends: Sides) -> Iterator[str]:
@@ -302,23 +300,22 @@ def _texts(unit: DisplayUnit, ends: Sides) -> Iterator[str]:
         yield unit.text(end, towards) if isfinite(end) else ""
 
 
-def _of_variance(share: float, is_life: bool, is_named: bool) -> str:
-    """Return a clause on the mean square of an error, which may have been named; "" if small."""
+def _of_variance(share: float, is_life: bool) -> str:
+    """Return a clause on the mean square of the numerical error; "" if small."""
     if not share >= NOTABLE:
         return ""
     variance = "variance of the logarithm" if is_life else "variance"
-    which = "this error" if is_named else "the rows' own numerical error"
+    error = "the mean square of numerical error"
     if share >= 1:
-        return f"the mean square of {which} exceeds the {variance}: all scatter may be numerical"
-    return f"the mean square of {which} is {percent(share)} of the {variance}"
+        return f"{error} exceeds the {variance}: all scatter may be numerical"
+    return f"{error} is {percent(share)} of the {variance}"
 
 
 def _missing(asked: float, missed: float, unstated: int) -> str:
     """Return a clause on rows that miss the accuracy or state no error; "" if there are none."""
     parts = []
     if missed > 0:
-        share = f"{100 * asked:g} %"
-        parts.append(f"{percent(missed)} of the rows miss the accuracy asked for, {share}")
+        parts.append(f"{percent(missed)} of the rows exceed the {100 * asked:g} % error target")
     if unstated:
         verb = "states" if unstated == 1 else "state"
         parts.append(f"{counted(unstated, 'row')} {verb} no error")

@@ -25,7 +25,7 @@ _DOUBTFUL = 2.0  # times the error of an index that is too uncertain for an inte
 
 
 AGAIN = sqrt(2)
-"""An estimate from other rows differs from this one so many times as much as the truth does."""
+"""Standard deviation of the difference of two independent estimates over that of one."""
 
 
 @dataclass(frozen=True)

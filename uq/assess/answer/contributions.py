@@ -28,7 +28,7 @@ SMALL = 0.05
 """A smaller share of the variance does not lead."""
 
 EXPANSION = "hdmr"
-"""The method that finds total indices in a plain sample."""
+"""The method that estimates total indices from a plain sample."""
 
 
 @dataclass(frozen=True)
@@ -96,13 +96,13 @@ class Contribution:
     Attributes
     ----------
     inputs : tuple of str
-        One; or several whose indices do not distinguish them, or twins.
+        One input, or several that are twins or have indistinguishable indices.
     indices : tuple of Estimate
-        Of each.
+        Index of each input.
     share_of_variance : bool
-        Whether an index is one.
+        Whether an index is a share of the variance.
     changes : tuple of AverageEffect
-        Of each; empty where they are not known.
+        Effect of each input; empty if not estimated.
     unit : DisplayUnit
         Of an index in the unit of the output.
     doubtful : tuple of str

@@ -36,7 +36,7 @@ _MOST_INPUTS = 3
 
 @dataclass(frozen=True)
 class Earliest:
-    """The rows that end first, and their distinguishing inputs and regimes.
+    """The rows that fail first, and their distinguishing inputs and regimes.
 
     Attributes
     ----------
@@ -112,12 +112,12 @@ class Earliest:
 
     @property
     def first(self) -> str:
-        """The rows that end first."""
+        """The rows that fail first."""
         named = [
             f"{number} ({self.unit.text(life)})"
             for number, life in zip(self.rows, self.lives, strict=True)
         ]
-        rows, verb = ("row", "ends") if len(named) == 1 else ("rows", "end")
+        rows, verb = ("row", "fails") if len(named) == 1 else ("rows", "fail")
         return sentence(f"{rows} {joined(named)} {verb} first")
 
     @property
@@ -128,7 +128,7 @@ class Earliest:
         share = f"{100 * self.size / self.total:.2g} %"
         who = f"the earliest {share} ({grouped(self.size)} rows)"
         if not self.inputs:
-            return f"No input distinguishes {who} measurably from the others."
+            return f"No input differs measurably between {who} and the others."
         pairs = list(zip(self.inputs, self.units, strict=True))[:_MOST_INPUTS]
         text = f"{who} have {joined([_in_words(*pair, i == 0) for i, pair in enumerate(pairs)])}"
         return sentence(text)
@@ -140,10 +140,10 @@ class Earliest:
             return ""
         regime = self.regimes[0]
         by_chance = regime.share.low <= regime.overall <= regime.share.high
-        also = ": chance may explain the difference" * by_chance
+        also = ": the difference is not significant" * by_chance
         return (
-            f"{share_text(regime.share)} of them are {regime.label}, of all rows"
-            f" {percent(regime.overall)}{also}."
+            f"{share_text(regime.share)} of them are {regime.label}, against"
+            f" {percent(regime.overall)} of all rows{also}."
         )
 
     @property
@@ -154,13 +154,13 @@ class Earliest:
     @property
     def lines(self) -> list[str]:
         """All sentences."""
-        return [*filter(None, (self.sentence, f"{self.first} To see the first: {self.command}"))]
+        return [*filter(None, (self.sentence, f"{self.first} Show the first: {self.command}"))]
 
 
 def earliest(
     findings: Findings, element: Element, unit: DisplayUnit, part: Replicates
 ) -> Earliest | None:
-    """Return the rows that end first and their distinguishing inputs; None if no row ends.
+    """Return the rows that fail first and their distinguishing inputs; None if none fails.
 
     Parameters
     ----------
@@ -202,6 +202,6 @@ def _in_words(difference: Apart, unit: DisplayUnit, is_first: bool) -> str:
         place = "away from" if difference.outwards > 0 else "near"
         return f"values of {name} {place} the middle of its range"
     side = "higher" if difference.direction > 0 else "lower"
-    of_others = " of the others" if is_first else ""
+    of_others = " for the others" if is_first else ""
     against = f"{unit.number(difference.median)} against {unit.text(difference.others)}"
     return f"a {side} {name} (median {against}{of_others})"

@@ -14,7 +14,6 @@ from uq.assess.answer.rankings import Ranking, ranking_of
 from uq.assess.answer.wording import (
     DisplayUnit,
     called_together,
-    sentence,
     share_text,
     unit_of_input,
 )
@@ -46,7 +45,7 @@ class Event:
     name : str
         The target, such as ``P(life<86400.0)``.
     predicate : str
-        What the rows do: ``end within 24 hours``, ``exceed 12 degrees in magnitude``.
+        The event in words: ``fail within 24 hours``, ``exceed 12 degrees in magnitude``.
     share : Estimate
     failed : Estimate or None
         Bounds with the failed rows at best and at worst, where rows failed.
@@ -59,13 +58,14 @@ class Event:
     over_unit : DisplayUnit
         Of that input.
     undefined : float
-        Share of the rows in which the output is undefined, so that neither side holds.
+        Share of the rows in which the output is undefined, on neither side of the threshold.
     is_of_single : bool
-        Whether a level without the leading input decides more than it.
+        Whether a level without the leading input explains more than it.
     limit : Limit or None
-        Of that input, where its unwanted side is rare on average; None where no side is unwanted.
+        Range of that input in which the unwanted side is rare on average; None if no side is
+        unwanted.
     by : tuple of callable
-        The functions that compute its probability.
+        The functions that compute the probability.
     """
 
     name: str
@@ -82,7 +82,7 @@ class Event:
     by: Functions = ()
 
     def fact(self, result: Result | None = None) -> Fact:
-        """Return the event with its numbers; its words say what decides it."""
+        """Return the event with its numbers; its sentence names the main driver."""
         share = {"sentence": self.sentence} | estimate_json.whole(self.share)
         share |= estimate_json.failed(self.failed) | {"undefined": self.undefined}
         rows = None if result is None else result.independent
@@ -111,11 +111,11 @@ class Event:
         """Its probability, or the reason why it is unknown."""
         if isnan(self.share.value):
             why = self.share.reason
-            return sentence(f"how many {self.clause} is not known: {why}") if why else ""
+            return f"The share that {self.clause} cannot be estimated: {why}." if why else ""
         text = f"{share_text(self.share)} {self.predicate}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_range(self.failed.low, self.failed.high)
-            text += f"; with failed rows {ends}"
+            text += f"; with failed rows at best and worst, {ends}"
         if self.undefined > 0:
             text += f"; {percent(self.undefined)} are undefined"
         return f"{text}."
@@ -132,9 +132,11 @@ class Event:
 
     @property
     def named_cause(self) -> str:
-        """Its main driver, after its name."""
+        """Its name and its main driver."""
         cause = self.decided_by
-        return f"{capitalized(self.predicate)}: {cause[:1].lower()}{cause[1:]}" if cause else ""
+        after = ", " if cause.startswith("Main ") else ": "
+        words = capitalized(self.predicate)
+        return f"{words}{after}{cause[:1].lower()}{cause[1:]}" if cause else ""
 
     @property
     def limited(self) -> str:
@@ -157,19 +159,19 @@ class Event:
         leader = self.ranking.leader
         if leader is None:
             return self.ranking.sentence if self.ranking.reason else ""
-        text = f"decided most by {leader.words}"
-        if self.is_of_single or self.ranking.may_be_overturned:
-            text = f"of single inputs, decided most by {leader.words}"
+        single = " single input" * (self.is_of_single or self.ranking.may_be_overturned)
+        plural = "s" * (len(leader.inputs) > 1)
+        text = f"Main{single or ' driver'}{plural}: {leader.words}"
         if leader.share_of_variance and len(leader.inputs) == 1 and leader.value < MINOR:
-            text += f", though it alone explains only {leader.size}"
-        if self.curve is not None:
-            places = [self.curve.least, self.curve.most]
-            first, last = (
-                f"{percent(self.curve.shares[i].value)} where it is {self.part(i)}" for i in places
-            )
-            over = f" over {called_together([self.over])}" if len(leader.inputs) > 1 else ""
-            text += f":{over} from {first} to {last}"
-        return sentence(text)
+            text += f", although it alone explains only {leader.size}"
+        if self.curve is None:
+            return f"{text}."
+        least, most = (
+            f"{percent(self.curve.shares[i].value)} {self.part(i)}"
+            for i in (self.curve.least, self.curve.most)
+        )
+        over = called_together([self.over])
+        return f"{text}. Over {over}, the share ranges from {least} to {most}."
 
     def part(self, i: int) -> str:
         """Return a part of the input that the curve is over, with neighbours alike, in words."""
@@ -231,7 +233,7 @@ def event(findings: Findings, target: str, predicate: str, statistic: Statistic)
     except InputError as refused:
         why = str(refused)
         if not split_name(target)[2]:  # a regime that does not occur in the ranked rows
-            why = f"no ranking of the inputs: no row that it could rest on is {predicate}"
+            why = f"no ranking of the inputs: none of the ranked rows is {predicate}"
         return replace(outcome, ranking=Ranking(target, method, reason=why))
     outcome = replace(outcome, ranking=ranking)
     if ranking.leader is None:

@@ -1,4 +1,4 @@
-"""The level with most of the variance, and how intermingled the regimes are, in sentences."""
+"""Variance components by level, and the level with most of the variance."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,6 +20,8 @@ from uq.stats.variance_components import nested_shares
 
 _MOST_NAMED = 4
 
+_MACHINE, _CHANCE = "the machine", "chance"
+
 
 @dataclass(frozen=True)
 class VarianceComponent:
@@ -29,7 +31,7 @@ class VarianceComponent:
     ----------
     name : {"shared", "own", "chance"}
     words : str
-        ``the start``, ``the machine``.
+        ``initial conditions``, ``the machine``.
     inputs : tuple of str
         Inputs of this level, the largest contributions first.
     ranked : int
@@ -42,6 +44,11 @@ class VarianceComponent:
     inputs: tuple[str, ...]
     share: Estimate
     ranked: int = 0
+
+    @property
+    def explains(self) -> str:
+        """The verb for its words."""
+        return "explains" if self.words in (_MACHINE, _CHANCE) else "explain"
 
     @property
     def inputs_named(self) -> str:
@@ -61,10 +68,9 @@ class VarianceComponents:
     ----------
     target : str
         Name of the target, as in `uq.levels`.
-    subject : str
-        The quantity or question decided: ``its scatter``, ``whether it is periodic``.
     variance : str
-        The apportioned variance: ``the variance of its logarithm``.
+        The apportioned variance: ``the variance of the logarithm``, ``the variance in whether it
+        is periodic``.
     levels : tuple of VarianceComponent
         Levels on which something varies, the largest share first.
     another : Estimate or None
@@ -72,7 +78,6 @@ class VarianceComponents:
     """
 
     target: str
-    subject: str
     variance: str
     levels: tuple[VarianceComponent, ...]
     another: Estimate | None = None
@@ -114,14 +119,12 @@ class VarianceComponents:
             shares = [
                 f"{component.words} {share_text(component.share)}" for component in self.levels
             ]
-            return (
-                f"No level alone decides {self.subject}: of {self.variance}, {', '.join(shares)}."
-            )
+            return f"No level clearly explains most of {self.variance}: {', '.join(shares)}."
         named = f" ({first.inputs_named})" if first.inputs else ""
         share = f"{share_text(first.share)} of {self.variance}"
-        least = [f"{component.words} {share_text(component.share)}" for component in rest]
-        text = f"{first.words}{named} decides {self.subject}: {share}"
-        return sentence(", ".join([text, *least]))
+        others = [f"{component.words} {share_text(component.share)}" for component in rest]
+        text = f"{first.words}{named} {first.explains} {share}"
+        return sentence(", ".join([text, *others]))
 
     @property
     def switching(self) -> str:
@@ -132,7 +135,7 @@ class VarianceComponents:
 
 
 def levels_of(
-    findings: Findings, target: str, subject: str, ranking: Ranking | None = None
+    findings: Findings, target: str, question: str = "", ranking: Ranking | None = None
 ) -> VarianceComponents | None:
     """Return the variance components of a target; None if unknown.
 
@@ -141,8 +144,8 @@ def levels_of(
     findings : Findings
     target : str
         Of an element, such as ``life``, or of an event.
-    subject : str
-        The quantity or question decided, in words.
+    question : str
+        Of an event, in words: ``whether it is periodic``.
     ranking : Ranking, optional
         Of the inputs: a level names first those that contribute most.
     """
@@ -178,10 +181,10 @@ def levels_of(
     if len(components) < 2 or any(isnan(component.share.value) for component in components):
         return None
     form = FORMS.get(split_name(name)[0])
+    variance = f"the variance in {question}" if question else "the variance"
     return VarianceComponents(
         name,
-        subject,
-        f"the variance of its {form}" if form else "the variance",
+        f"the variance of the {form}" if form else variance,
         tuple(sorted(components, key=lambda component: -component.share.value)),
         decomposition.another_regime if target.startswith("P(regime=") else None,
     )
@@ -192,14 +195,14 @@ def _words(findings: Findings, inputs: Mapping[str, str], units: int) -> dict[st
     drawn_anew = [name for name, level in inputs.items() if level == CHANCE]
     starts = any("initial" in findings.result.dataset[name].attrs for name in drawn_anew)
     return {
-        SHARED: "what all units share",
-        OWN: "the machine" if units == 1 else "what is each unit's own",
-        CHANCE: "the start" if starts else "chance",
+        SHARED: "shared inputs",
+        OWN: _MACHINE if units == 1 else "differences between units",
+        CHANCE: "initial conditions" if starts else _CHANCE,
     }
 
 
 def starts_alike(result: Result) -> str:
-    """Return a sentence on a start that could vary but is equal in all rows, or ""."""
+    """Return a sentence on initial conditions that are equal in all rows, or ""."""
     starts = [
         name
         for name, variable in result.dataset.variables.items()
@@ -209,11 +212,11 @@ def starts_alike(result: Result) -> str:
         return ""
     named = joined([called(str(name)) for name in starts])
     verb = "is" if len(starts) == 1 else "are"
-    return f"Whether the start decides the regime is not known: {named} {verb} fixed."
+    return f"The effect of initial conditions on the regime is unknown: {named} {verb} fixed."
 
 
 def intermingled(exponent: Estimate, rows: Result | None = None) -> Fact:
-    """Return how intermingled the regimes are; without members if their boundary may be smooth.
+    """Return the uncertainty exponent of regimes; without members if boundaries may be smooth.
 
     Parameters
     ----------
@@ -225,16 +228,16 @@ def intermingled(exponent: Estimate, rows: Result | None = None) -> Fact:
     Returns
     -------
     Fact
-        ``uncertainty_exponent``, and ``left``: the share of uncertain outcomes that remain so if
-        all inputs are known twice as well; both with ends.
+        ``uncertainty_exponent``, and ``left``: the share of uncertain outcomes that remain
+        uncertain with half the uncertainty of all inputs; both with ends.
     """
     if not (exponent.has_interval and exponent.high < 1):
         return Fact({})
     left = still_uncertain(exponent)
     text = (
-        f"The regimes are intermingled: with all inputs known twice as well, {share_text(left)} of"
-        " the uncertain outcomes would stay uncertain; between smooth boundaries, 50 %"
-        f" (uncertainty exponent {rounded(exponent.value)})."
+        "The regimes are intermingled: with half the uncertainty of all inputs,"
+        f" {share_text(left)} of the uncertain outcomes would remain uncertain, against 50 % at"
+        f" smooth boundaries (uncertainty exponent {rounded(exponent.value)})."
     )
     numbers = {
         f"{name}{end}": value
@@ -246,7 +249,7 @@ def intermingled(exponent: Estimate, rows: Result | None = None) -> Fact:
 
 
 def mixing(findings: Findings) -> Fact:
-    """Return how intermingled the regimes of a result are."""
+    """Return the uncertainty exponent of the regimes of a result."""
     boundary = findings.boundary
     if boundary is None:
         return Fact({})

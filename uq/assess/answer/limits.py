@@ -1,4 +1,4 @@
-"""Ranges of the deciding input in which the unwanted side is rare on average."""
+"""Ranges of the leading input in which the unwanted side of an event is rare on average."""
 
 from dataclasses import dataclass, field, replace
 from math import inf, nan
@@ -20,30 +20,30 @@ CURVE_FUNCTIONS = (event_curve, share_interval)
 
 @dataclass(frozen=True)
 class Limit:
-    """A range of an input over which an event is rare on average; or why there is none.
+    """A range of an input over which an event is rare on average, or the reason for none.
 
     Attributes
     ----------
     over : str
         The input.
     predicate : str
-        The event that is rare in it: ``end within 60 s``; or that is then frequent.
+        The event that is rare in it, or frequent if wanted: ``fail within 60 s``.
     is_wanted : bool
         Whether the event is wanted, so that it is the frequent side.
     at : float
-        The limit, its inner end; NaN where there is none.
+        Inner end of the range, the limit; NaN without one.
     end : float
-        Its outer end, the last value in the rows; NaN where there is no limit.
+        Outer end of the range, the last value in the rows; NaN without a limit.
     is_lower : bool
         Whether the input has to be larger than the limit.
     of_values : bool
         Whether the input has few values, so that nothing is averaged.
     share : Estimate
-        Its probability in the part of the input next to the limit, or in the last part.
+        Probability of the event in the part of the input next to the limit, or in the last part.
     unit : DisplayUnit
         Of the input.
     why : str
-        Why there is no limit, or "".
+        Reason for a missing limit, or "".
     """
 
     over: str
@@ -75,11 +75,12 @@ class Limit:
 
     @property
     def sentence(self) -> str:
-        """The range, or why there is none."""
+        """The range, or the reason for none."""
         if self.why:
             return sentence(self.why)
-        where = f"where {called(self.over)} is {self.place}"
-        return sentence(f"with 95 % confidence, {self.few} {self.predicate}{self.averaged} {where}")
+        condition = f"if {called(self.over)} is {self.place}"
+        text = f"with 95 % confidence, {self.few} {self.predicate}{self.averaged} {condition}"
+        return sentence(text)
 
     @property
     def place(self) -> str:
@@ -108,7 +109,7 @@ def _few(is_wanted: bool) -> str:
 def limit_of(
     curve: EventCurve, over: str, unit: DisplayUnit, predicate: str, is_unwanted: bool
 ) -> Limit | None:
-    """Return the range of an input over which an event is rare on average, as far as is settled.
+    """Return the range of an input over which an event is rare on average, with 95 % confidence.
 
     Parameters
     ----------
@@ -126,11 +127,11 @@ def limit_of(
     Returns
     -------
     Limit or None
-        None where it is rare in all parts. The range spans the last parts, from the wanted end
-        of the input on, whose mean probabilities are all smaller with confidence, so that the mean
-        over the range is. Tested in this order until one fails, at least one of them is larger in
-        no more repetitions than a single one would be [1]_. Rows show means alone: within a part, a
-        single value may have any probability. Where each part is a value, it is that of the value.
+        None if the event is rare in all parts. The range extends from the wanted end of the input
+        over those parts whose mean probabilities are confidently below the limit. Parts are tested
+        in this fixed order until one fails, which preserves the confidence without correction for
+        multiple tests [1]_. Rows estimate means only: within a part, a single value may have any
+        probability, unless each part is a value.
 
     References
     ----------
@@ -156,7 +157,7 @@ def limit_of(
     if all(share.high < RARE for share in shares):
         return None
     if any(share.high < later.low for i, share in enumerate(shares) for later in shares[i + 1 :]):
-        why = f"no limit of {names}: how many {predicate} does not change steadily with it"
+        why = f"no limit of {names}: the share that {predicate} is not monotonic in it"
         return replace(plain, why=why)
     rare = len(shares)
     while shares[rare - 1].high < RARE:
@@ -165,17 +166,18 @@ def limit_of(
         return replace(plain, at=edges[rare], end=edges[-1], share=shares[rare])
     last = replace(plain, at=edges[-2], end=edges[-1])
     if not best.has_interval:
-        why = f"whether {plain.few} {predicate} where {names} is {last.place} is not settled"
-        return replace(plain, why=why)
+        few = f"{plain.few} {predicate} if {names} is {last.place}"
+        return replace(plain, why=f"it is not settled whether {few}")
     shown = best if is_unwanted else _opposite(best)
     many = f"{percent_range(shown.low, shown.high)} {predicate}"
     low, high = sorted(edges[-2:])
     ends = unit.between(low, high)
-    why = f"averaged over the best of {len(shares)} parts of {names} ({ends}), {many}"
+    parts = f"the best of {len(shares)} parts of {names} ({ends})"
+    why = f"even in {parts}, {many}{plain.averaged}"
     if curve.of_values:
-        why = f"where {names} is {last.place}, {many}"
+        why = f"even if {names} is {last.place}, {many}"
     if best.low <= RARE:
-        why += f"; whether {plain.few} do is not settled"
+        why += f"; it is not settled whether {plain.few} do"
     return replace(plain, why=why)
 
 

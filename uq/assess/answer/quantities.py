@@ -42,6 +42,7 @@ from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING
 from uq.study.file import AnalysisTable
+from uq.text.numbers import capitalized
 from uq.text.units import readable
 
 LOW, HIGH = 0.05, 0.95
@@ -65,13 +66,13 @@ class Quantity:
     events : tuple of Event
     ranking : Ranking or None
     wanted : {"above", "below", ""}
-        The side of its values that is wanted; "" where that is not known, and for lives.
+        The wanted side of its values; "" if not stated, and for lives.
     earliest : Earliest or None
-        Of a life that does not end with a success: which rows end first, and why.
+        The rows that fail first and what distinguishes them, unless the life ends with a success.
     scaled_by : tuple of str
-        Quantities whose values are assumed and to which all its lives are proportional.
+        Assumed quantities to which all its lives, or their reciprocals, are proportional.
     own_error : Fact or None
-        Effect of the stated errors of the rows on the promise.
+        Effect of the numerical errors of the rows on the promise.
     b_lives : tuple of Statistic
         Of a life.
     """
@@ -118,8 +119,8 @@ class Quantity:
         if not self.scaled_by:
             return sentence(self.words)
         are = "are" if len(self.scaled_by) > 1 else "is"
-        named = called_together(self.scaled_by)
-        return f"{sentence(self.words)} Its scale is that of {named}, which {are} assumed."
+        assumed = f"{capitalized(called_together(self.scaled_by))} {are} assumed"
+        return f"{sentence(self.words)} {assumed}: only relative lives are meaningful."
 
     @property
     def is_life(self) -> bool:

@@ -31,7 +31,7 @@ from uq.stats.estimate import NOTHING, Estimate
 from uq.text.numbers import capitalized, grouped
 
 GOAL = 0.1
-"""Half-width of the interval of an index, of the largest if it has a unit, at which it is known."""
+"""Half-width at which an index is settled; relative to the largest index if it has a unit."""
 
 MOST_TIED = 3
 """With more indistinguishable inputs than this, there is no ranking."""
@@ -53,17 +53,17 @@ class Ranking:
     index_meaning : str
         Meaning of the index, such as a share of the variance.
     contributions : tuple of Contribution
-        The largest first; only those that exceed inputs without effect.
+        The largest first; only inputs whose index exceeds that of inputs without effect.
     reason : str
-        Reason for a missing ranking: no index, or nothing settled; "" otherwise.
+        Reason for a missing ranking: no index, or none settled; "" otherwise.
     rows_factor : float
         Factor on the sample size that would settle it; NaN if not applicable.
     is_flat : bool
         Whether it is settled that no input contributes measurably.
     rivals : tuple of str
-        Inputs one of which would lead with another seed, with 95 %; none if unknown.
+        Inputs that may lead in a repeat with another seed, at 95 % confidence; none if unknown.
     share_of : str
-        The variance that an index is a share of: ``its variance``; "" of other indices and of
+        The variance that an index is a share of: ``the variance``; "" of other indices and of
         events.
     unexplained : Estimate
         Share of the variance that no single input explains, where inputs are ranked by first-order
@@ -96,7 +96,7 @@ class Ranking:
         notes: tuple[str, ...] = ()
         if result is not None and result.is_nested:
             used = grouped(len(result.first_rows))
-            notes = (f"the index rests on {used} of these rows, the first of each sample",)
+            notes = (f"the index uses {used} of these rows, the first of each sample",)
         members: dict[str, Any] = {
             "sentence": self.sentence,
             "target": self.target,
@@ -144,7 +144,8 @@ class Ranking:
     def may_be_overturned(self) -> bool:
         """Return whether another input may contribute more, with interactions, than the leader.
 
-        A total index is at most the index alone and all that no single input explains.
+        A total index is at most the first-order index plus the variance that no single input
+        explains.
         """
         if self.leader is None or isnan(self.unexplained.value):
             return False
@@ -181,12 +182,12 @@ class Ranking:
         """Share that no single input explains, if it could change the order; else ""."""
         if not self.may_be_overturned or self.of_event:
             return ""
-        text = f"No single input explains {whole_percent(self.unexplained)}"
+        text = f"Single inputs leave {whole_percent(self.unexplained)} unexplained"
         if not self.totals:
             return f"{text}: interactions could change the order; {self.remedy}."
         first = [(name, total) for name, total in self.totals.items()][:2]
         named = joined([f"{called(name)} {100 * min(total, 1.0):.0f} %" for name, total in first])
-        return f"{text}; with interactions (HDMR), the largest contributions are those of {named}."
+        return f"{text}; the largest total contributions, with interactions, are {named} (HDMR)."
 
     @property
     def _of(self) -> str:
@@ -245,7 +246,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         if needed > 1:
             factor = max(factor, needed)
         return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)
-    # What does not exceed inputs without effect may yet contribute as much as the first.
+    # An index that does not exceed the limit without effect may still equal the first.
     weighed = [
         candidate for candidate in measured if candidate.counts or are_tied(measured[0], candidate)
     ]
@@ -258,7 +259,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         reason, is_flat = f"the order of {names} is not settled", False
         if factor <= 1:  # the rows distinguish larger differences
             is_flat = kind.unit == "variance" and first.index.value < SMALL
-            reason, factor = _alike(names, first, kind, split_name(name)[0] == "P", is_flat), nan
+            reason, factor = _alike(names, first, kind, is_flat), nan
         return Ranking(name, method, kind.key, meaning, (), reason, factor, is_flat)
     least = LEAST * _scale(measured[0], kind)
     listed = [group for group in groups if group[0].index.value >= least]
@@ -270,7 +271,7 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         contribution_of(group, kind, name, moved, verbs, units) for group in listed
     )
     is_share = kind.unit == "variance" and split_name(name)[0] != "P"
-    of_what = (f"the variance of its {form}" if form else "its variance") if is_share else ""
+    of_what = (f"the variance of the {form}" if form else "the variance") if is_share else ""
     rivals = _rivals(measured)
     ranking = Ranking(
         name, method, kind.key, meaning, contributions, rivals=rivals, share_of=of_what
@@ -331,7 +332,7 @@ def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
 def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
     """Return the reason why no index counts, the factor on the rows, and whether none is large."""
     text = f"{kind.key} of {called(first.name)} is {first.index.value:z.2f}"
-    which = f"which inputs {'decide that' if of_event else 'matter'} is not settled"
+    which = f"the {'main driver' if of_event else 'ranking of the inputs'} is not settled"
     if not isfinite(first.half):
         return f"{which}: {text}, without an interval", nan, False
     goal = GOAL * _scale(first, kind)
@@ -341,17 +342,16 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
         ends = f"{first.index.low:z.2f} to {first.index.high:z.2f}"
         interval = f" ({ends})" if first.index.has_interval else ""
         return f"{which}: {text}{interval}", (first.half / goal) ** 2, False
-    verb = "decides that" if of_event else "contributes"
-    return f"no single input {verb} measurably: {text} at most", nan, True
+    largest = f"the largest {kind.key} is {first.index.value:z.2f} ({called(first.name)})"
+    return f"no single input contributes measurably: {largest}", nan, True
 
 
-def _alike(names: str, first: Measured, kind: IndexKind, of_event: bool, is_flat: bool) -> str:
-    """Return a clause: inputs contribute alike, or none contributes much."""
-    most = f"is {first.index.value:.2f} at most"
+def _alike(names: str, first: Measured, kind: IndexKind, is_flat: bool) -> str:
+    """Return a clause: inputs contribute about equally, or none contributes much."""
+    most = f"at most {first.index.value:.2f}"
     if is_flat:
-        does = "decides that alone" if of_event else "explains much"
-        return f"no single input {does}: {kind.key} of {names} {most}"
-    return f"{names} {'decide that' if of_event else 'contribute'} alike: {kind.key} {most}"
+        return f"no single input explains much: {kind.key} of {names} is {most}"
+    return f"{names} contribute about equally: {kind.key} is {most}"
 
 
 def ranking_of_element(findings: Findings, element: Element, unit: DisplayUnit) -> Ranking | None:

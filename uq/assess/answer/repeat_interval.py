@@ -1,4 +1,4 @@
-"""Prediction interval: where the same study with another seed would most likely end."""
+"""Prediction interval of an estimate for a repeat of the study with another seed."""
 
 from math import isfinite, nan
 from typing import Any
@@ -12,23 +12,25 @@ from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.text.numbers import percent_interval
 
+OPENING = "In a repeat with another seed, "
+
 MOST_NAMED = 3
 
 
 def found_again(estimate: Estimate, is_positive: bool) -> tuple[float, float]:
-    """Return between which values an estimate from as many other rows lies with 95 %.
+    """Return the 95 % prediction interval of an estimate from as many other rows.
 
     Parameters
     ----------
     estimate : Estimate
         With its 95 % interval.
     is_positive : bool
-        Whether it is a life, whose logarithm scatters evenly.
+        Whether it is a life, whose interval is symmetric on the logarithm.
 
     Returns
     -------
     low, high : float
-        NaN where the interval is not known.
+        NaN without an interval.
 
     References
     ----------
@@ -48,8 +50,8 @@ def repeated_quantile(
 ) -> Fact:
     """Return the prediction interval of the quantile that a promise bounds, and of the ranking.
 
-    A low quantile is no larger than the upper end of the likely range, which matters where values
-    jump, and a high one no smaller than its lower end.
+    A low quantile is cut at the upper end of the likely range, and a high one at its lower end,
+    which matters where values jump.
 
     Returns
     -------
@@ -68,10 +70,10 @@ def repeated_quantile(
                 of_magnitudes = " of the magnitudes" if promise.of_magnitude else ""
                 subject = f"the {100 * p:.3g} % quantile{of_magnitudes}"
                 first, last = promise.unit.text(low), promise.unit.text(high)
-                between = f"lie between {promise.unit.between(low, high, ' and ')}"
-                # to the digits shown
-                verb_phrase = f"again be {first}" if first == last else between
-                return _repeated(f"{subject} would {verb_phrase}", (low, high), ranking, by)
+                # equal to the digits shown
+                both = promise.unit.between(low, high)
+                number = f"again be {first}" if first == last else f"be {both}"
+                return _repeated(f"{subject} would {number}", (low, high), ranking, by)
     return _repeated("", (nan, nan), ranking)
 
 
@@ -105,7 +107,7 @@ def _repeated(
 ) -> Fact:
     clauses = (f"{number} (95 %)" if number else "", _ranked_again(ranking))
     text = "; ".join(filter(None, clauses))
-    members: dict[str, Any] = {"sentence": f"With another seed, {text}." if text else ""}
+    members: dict[str, Any] = {"sentence": f"{OPENING}{text}." if text else ""}
     if not number:
         return Fact(members, mentions=())
     members["expected"] = dict(zip(("low", "high"), map(estimate_json.number, ends), strict=True))

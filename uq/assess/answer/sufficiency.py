@@ -1,4 +1,4 @@
-"""Sufficiency of the rows: what they do not settle, and the sample size that would."""
+"""Sufficiency of the sample size: unsettled results, and the sample size they need."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -20,17 +20,17 @@ from uq.result.variables import is_error
 from uq.text.numbers import capitalized, percent, rows_in_words
 
 SHARE = 0.2
-"""A probability is settled if half its interval is at most this part of the rarer side ..."""
+"""A probability is settled if its half-width is at most this fraction of the rarer side ..."""
 
 POINT = 0.01
 """... or at most a percentage point."""
 
 BOUND = 0.1
-"""A promise is settled if it is within this part of the quantile that it bounds (of a life), or of
-the likely range."""
+"""A promise is settled if it is within this fraction of the quantile that it bounds (of a life),
+or of the likely range."""
 
 MOST = 100.0
-"""Beyond so many times the rows, the root of n is no forecast."""
+"""Largest factor on the sample size that is predicted from its root."""
 
 
 _BOUNDS = {"tolerance": "tolerance bounds", "joint_bounds": "joint bounds"}
@@ -60,7 +60,7 @@ def unsettled(quantity: Quantity) -> Iterator[Shortfall]:
         yield ranking.reason, ranking.rows_factor
     for event in quantity.events:
         if event.ranking is not None and isfinite(event.ranking.rows_factor):
-            clause = f"what decides how many {event.clause} is not settled"
+            clause = f"the main driver of the share that {event.clause} is not settled"
             yield clause, event.ranking.rows_factor
 
 
@@ -72,8 +72,8 @@ def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterat
         bounds = (element.find(key, side) for element in described for side in ("lower", "upper"))
         needed = max((bound.rows_needed or 0.0 for bound in bounds if bound), default=0.0)
         if needed:
-            asked = f"the {words} that the study asks for"
-            clause = f"{asked} need {needed:.0f} rows" if isfinite(needed) else ""
+            asked = f"the requested {words}"
+            clause = f"{asked} require {needed:.0f} rows" if isfinite(needed) else ""
             yield clause or f"too many rows failed for {asked}", needed / max(rows, 1)
 
 
@@ -87,7 +87,8 @@ def unsettled_share(event: Event) -> Iterator[Shortfall]:
     half = (share.high - share.low) / 2
     goal = max(SHARE * min(share.value, 1 - share.value), POINT)
     if half > goal:
-        clause = f"how many {event.clause} is known to {percent(half).removesuffix(' %')} points"
+        points = percent(half).removesuffix(" %")
+        clause = f"the share that {event.clause} is uncertain by ±{points} percentage points"
         yield clause, (half / goal) ** 2
 
 
@@ -106,11 +107,11 @@ def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Shortfa
         if not promise.is_life:
             scale = abs(likely.high.value - likely.low.value)
         away = abs(estimate.value - reached)
-        # Beyond, the quantile is where values jump, and nearly any number of rows bounds it badly.
+        # Farther away, the quantile is at a jump of the values, which more rows hardly help.
         if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
             text = promise.unit.text(reached, outwards)
             best = promise.unit.text(estimate.value)
-            clause = f"the cautious bound, {text}, is far from the estimate, {best}"
+            clause = f"the conservative bound, {text}, is far from the estimate, {best}"
             yield clause, (away / (BOUND * scale)) ** 2
 
 
@@ -173,11 +174,11 @@ class Enough:
         if self.unknown:
             return again
         if any(isfinite(factor) for _, factor in self.question):
-            opening = "The rows are not enough to settle all of this. "
+            opening = "Sample size is not sufficient for all of this. "
         elif self.errors is not None:
-            opening = "More rows alone would not help, more accurate ones would. "
+            opening = "Numerical error dominates: more accurate rows would help, more rows not. "
         else:
-            opening = "" if self.question else "The rows are enough: "
+            opening = "" if self.question else "Sample size is sufficient: "
         if not again:
             return ""
         return opening + (f"{again[0].lower()}{again[1:]}" if opening.endswith(": ") else again)
@@ -191,16 +192,15 @@ class Enough:
             self.unit.text(error) for error in (self.errors.numerical, self.errors.sampling)
         )
         return (
-            "Compute more accurate rows before more of them (finer settings or longer averages):"
-            f" their numerical error may move the {self.errors.estimate} by {numerical},"
-            f" sampling by {sampling}."
+            "Reduce numerical error (finer settings or longer averages) before adding rows: it may"
+            f" change the {self.errors.estimate} by {numerical}, sampling by {sampling}."
         )
 
 
 def enough_of(
     findings: Findings, answered: Sequence[Quantity], regimes: Sequence[Event] = ()
 ) -> Enough:
-    """Return whether the rows are enough.
+    """Return the sufficiency of the sample size.
 
     Parameters
     ----------
@@ -270,7 +270,7 @@ def _errors(findings: Findings, quantity: Quantity) -> Errors | None:
 
 def settled(clause: str, factor: float, result: Result) -> str:
     """Return an unsettled result and the sample size that would settle it."""
-    return f"{clause}; {needed(factor, result)} in all would settle it."
+    return f"{clause}; {needed(factor, result)} in total would settle it."
 
 
 def needed(factor: float, result: Result) -> str:

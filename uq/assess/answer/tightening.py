@@ -8,7 +8,7 @@ from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.tolerance_bound import ToleranceBound
-from uq.assess.answer.tolerance_effects import SHARE_OF, TighterTolerance
+from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import CHOSEN, DisplayUnit, called, mark_of, twin_of, unit_of_input
 from uq.assess.targets import split_name
 from uq.assess.what_if import reweighted_summary
@@ -87,7 +87,7 @@ def _in_words(result: Result, name: str, new: dict[str, float]) -> str:
 
 
 _PARTS = ("quantiles", "thresholds")
-_UNKNOWN = "the rows cannot show what it would change"
+_UNKNOWN = "the rows cannot show the effect"
 
 
 def tightened(
@@ -164,14 +164,14 @@ def _promised(
 ) -> Iterator[tuple[tuple[str, ...], str, Estimate, DisplayUnit, bool | None]]:
     """Yield the numbers that matter: key, words, number, unit, and whether more is better.
 
-    No input is said to move the probability of an event that no single input decides.
+    Events without a leading input are skipped.
     """
     for event in quantity.events:
         if event.ranking is not None and event.ranking.denies_a_leader:
             continue
         side = "below" if "<" in event.name else "above"
         key = ("thresholds", split_name(event.name)[2], side)
-        words = SHARE_OF + event.predicate
+        words = f"the share of rows that {event.predicate}"
         yield key, words, event.share, DisplayUnit(), quantity.wants_more
     promise = quantity.promise
     if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign

@@ -19,9 +19,12 @@ _ONE_END = (1 + CONFIDENCE) / 2
 
 _LAST = ("smallest", "largest")
 
+FAIL = "fail"
+"""Verb for the end of a life, unless that is a success."""
+
 
 def described_values(noun: str, undefined: float, rows_failed: bool = False) -> str:
-    """Return which values a statistic describes: ``of the computed lives``; "" for all.
+    """Return the values that a statistic describes: `` of values``, `` of computed lives``.
 
     Parameters
     ----------
@@ -31,15 +34,14 @@ def described_values(noun: str, undefined: float, rows_failed: bool = False) -> 
     rows_failed : bool
         Whether there are rows without a value because they failed.
     """
-    if undefined > 0:
-        return f"of the defined {noun}"
-    return f"of the computed {noun}" if rows_failed else ""
+    quality = "defined " if undefined > 0 else "computed " if rows_failed else ""
+    return f" of {quality}{noun}"
 
 
 def piles(
     element: Element, sides: tuple[bool, bool], coverage: float
 ) -> dict[int, tuple[float, float]]:
-    """Return the sides on which more rows have the last value than a bound would leave out.
+    """Return the sides on which too many rows share the extreme value for a tolerance bound.
 
     Parameters
     ----------
@@ -71,23 +73,22 @@ class ToleranceBound:
     Attributes
     ----------
     coverage, confidence : float
-        At least this share of all lies on the right side of the bound, with this confidence.
+        At least this share of all values is on the safe side of the bound, with this confidence.
     lower, upper : float
-        Bounds; NaN where there is none, or it is not asked for.
+        Bounds; NaN if not available or not requested.
     quantiles : tuple of Estimate
-        Where there is no tolerance bound: quantiles of one less the coverage and of the coverage,
-        those that are asked for (else without numbers).
+        Quantiles of one less the coverage and of the coverage, without numbers if not requested.
     failed : tuple
-        The same quantiles with failed rows at either side; None where none failed.
+        The same quantiles with failed rows at either side; None if none failed.
     reason : str
         Reason for a missing tolerance bound, or "".
     unit : DisplayUnit
     is_life, of_magnitude : bool
-        Whether it is a life that ends; whether it is the magnitude of an angle.
-    ends : str
+        Whether it bounds a life, or the magnitude of an angle.
+    ends : {"fail", "succeed"}
         Verb for the end of a life.
     joint : tuple of str
-        Outputs whose bounds hold at once, this one's among them; none for a bound of its own.
+        Outputs of the joint bounds, including this one; empty for a separate bound.
     rows_failed : bool
         Whether there are rows without a value because they failed.
     undefined : float
@@ -95,16 +96,16 @@ class ToleranceBound:
     recurs : bool
         Whether rows have equal values, so that many may equal a bound.
     ranks : tuple of int
-        Places of the bounds among all rows, the smallest first; 0 without one.
+        Ranks of the bounds among all rows, the smallest first; 0 without a bound.
     rows : int
         Number of all rows.
     piled : dict of int to (float, float)
-        Instead of a bound, where too many rows share the smallest or the largest value: its side,
-        0 or 1 -> this value, and the share of the rows that have it.
+        Sides without a bound, because too many rows share the extreme value: side, 0 or 1 -> this
+        value, and the share of the rows that have it.
     by : tuple of callable
         The functions that compute the bounds.
     by_quantile : tuple of tuple of callable
-        Those that compute each quantile.
+        The functions that compute each quantile.
     """
 
     coverage: float
@@ -117,7 +118,7 @@ class ToleranceBound:
     reason: str = ""
     is_life: bool = False
     of_magnitude: bool = False
-    ends: str = "end"
+    ends: str = FAIL
     joint: tuple[str, ...] = ()
     rows_failed: bool = False
     undefined: float = 0.0
@@ -132,8 +133,8 @@ class ToleranceBound:
     def sentence(self) -> str:
         """The promise, and the values at which rows pile up; "" if there is none."""
         piles = (
-            f"{percent(share)} of the rows share the {_LAST[side]} value, {self.unit.text(value)},"
-            " at which values may be cut off."
+            f"{percent(share)} of the rows have the {_LAST[side]} value, {self.unit.text(value)}:"
+            " values may be truncated there."
             for side, (value, share) in self.piled.items()
         )
         return " ".join(filter(None, (self._promised, *piles)))
@@ -176,7 +177,7 @@ class ToleranceBound:
     @property
     def _promised(self) -> str:
         share = f"{100 * self.coverage:g} %"
-        covered = " ".join(filter(None, (share, self._of_bounded)))
+        covered = f"{share}{self._of_values()}"
         bounds = [
             f"{self._side(i)} {self.unit.text(bound, (-inf, inf)[i])}"
             for i, bound in enumerate((self.lower, self.upper))
@@ -190,27 +191,25 @@ class ToleranceBound:
                 f", and at least {covered} ".join(bounds),
             )
             return f"{self._confidence}{separately}, at least {covered} {joined}."
-        share = " ".join(
-            filter(None, (share, described_values(_noun(self), self.undefined, self.rows_failed)))
-        )
-        cautious: list[str] = []
+        share += self._of_values(self.rows_failed)
+        quantiles: list[str] = []
         for i, quantile in enumerate(self.quantiles):
             end = (quantile.low, quantile.high)[i]
             if not isfinite(quantile.value):
                 continue
             text = f"{share} {self._side(i)} {self.unit.text(quantile.value)}"
             if isfinite(end):
-                text += f", cautiously {self.unit.text(end, (-inf, inf)[i])}"
+                text += f" (conservative bound: {self.unit.text(end, (-inf, inf)[i])})"
             else:
-                text = f"about {text}" if cautious else f"About {text}"
-            cautious.append(text)
-        return f"{'; '.join(cautious)}." if cautious else ""
+                text = f"about {text}" if quantiles else f"About {text}"
+            quantiles.append(text)
+        return f"{'; '.join(quantiles)}." if quantiles else ""
 
     def of_quantile(self, probability: float) -> "ToleranceBound | None":
-        """Return it with the bound of one quantile alone.
+        """Return the bound with one of its two sides alone.
 
-        None where there is none, or an end of the interval of the quantile would not bound it with
-        this confidence.
+        None if there is no bound on that side, or an end of the 95 % interval of the quantile does
+        not have the confidence of the bound.
         """
         if self.confidence > _ONE_END or self.joint or self.of_magnitude:
             return None
@@ -219,9 +218,9 @@ class ToleranceBound:
         return replace(self, upper=nan) if isfinite(self.lower) else None
 
     def would_be(self, quantile: Estimate, before: Estimate) -> str:
-        """Return a sentence on the new end of the interval of the quantile, beside the present one.
+        """Return a sentence on the changed end of the interval of the quantile.
 
-        "" without it, or where it is no better than now: the rows may be too few.
+        "" without an interval, or if its end is not better than now, as with too few rows.
         """
         is_upper = isfinite(self.upper)
         bound, now = ((estimate.low, estimate.high)[is_upper] for estimate in (quantile, before))
@@ -232,14 +231,15 @@ class ToleranceBound:
     def moved_end(self, then: float, studied: float) -> str:
         """Return a sentence on an end of the interval of the bounded quantile, then and as studied.
 
-        It is called an end, not a bound with this coverage, which is of another estimator.
+        Another estimator gives the tolerance bound, so that the end is not called a bound.
         """
         is_upper = isfinite(self.upper)
         side, p = ("upper", self.coverage) if is_upper else ("lower", 1 - self.coverage)
         quantile = f"{100 * p:.3g} % quantile{' of magnitudes' * self.of_magnitude}"
-        ends = (self.unit.text(end, (-inf, inf)[is_upper]) for end in (then, studied))
-        opening = f"The {side} end of the interval of the {quantile} would then be"
-        return f"{opening} {'; as studied, '.join(ends)}."
+        after, before = (self.unit.text(end, (-inf, inf)[is_upper]) for end in (then, studied))
+        change = f"{after}, {'up' if then > studied else 'down'} from {before} by the same method"
+        moved = f"remain {after}" if after == before else f"be {change}"
+        return f"The {side} end of the 95 % interval of the {quantile} would {moved}."
 
     @property
     def _confidence(self) -> str:
@@ -254,40 +254,42 @@ class ToleranceBound:
             several = isfinite(self.lower) and isfinite(self.upper)
             bound = f"{'joint ' * bool(self.joint)}tolerance bound{'s' * several}"
             ranks = [grouped(rank) for rank in self.ranks if rank]
-            places = f"{'s' * several} {' and '.join(ranks)} of {grouped(self.rows)} in order"
-            which = f": value{places}" if ranks else ""
+            places = f"rank{'s' * several} {' and '.join(ranks)} of {grouped(self.rows)}"
+            which = f" ({places})" if ranks else ""
             return f"{bound.capitalize()} from order statistics{which}, valid for any distribution."
-        end = " Instead, conservatively: the end of the 95 % interval." if self._is_cautious else ""
+        instead = " The conservative bound is the end of the 95 % interval of the quantile."
         bound = f"{'joint ' * bool(self.joint)}tolerance bound"
-        return f"No {bound}: {self.reason}.{end}"
+        return f"No {bound}: {self.reason}.{instead * self._has_interval}"
 
     @property
     def _others(self) -> str:
-        """With which other outputs the bounds hold at once."""
+        """The outputs of the joint bounds; "" of a single one."""
         if len(self.joint) == 1:
             return ""
         return f", within the joint bounds of {listed(self.joint)}"
 
-    @property
-    def _of_bounded(self) -> str:
-        """Values that a tolerance bound describes: failed rows count as beyond it."""
-        return described_values(_noun(self), self.undefined)
+    def _of_values(self, rows_failed: bool = False) -> str:
+        """Return the values that a bound describes; "" of all lives, which its verb implies.
+
+        Failed rows count as beyond a tolerance bound, and need no mention there.
+        """
+        if self.is_life and not (self.undefined or rows_failed):
+            return ""
+        return described_values(noun_of(self), self.undefined, rows_failed)
 
     @property
-    def _is_cautious(self) -> bool:
+    def _has_interval(self) -> bool:
         ends = (self.quantiles[0].low, self.quantiles[1].high)
         return any(isfinite(end) for end in ends)
 
     def _side(self, upper: int) -> str:
-        if self.of_magnitude:
-            return "stay within" if upper else "are at least" if self.recurs else "exceed"
         if self.is_life and upper:
             return f"{self.ends} within"
         if self.is_life:
-            return "reach" if self.recurs else "last longer than"
+            return "last at least" if self.recurs else "last longer than"
         if self.recurs:
-            return "do not exceed" if upper else "do not fall below"
-        return "stay below" if upper else "stay above"
+            return "are at most" if upper else "are at least"
+        return "are below" if upper else "are above"
 
 
 @dataclass(frozen=True)
@@ -303,7 +305,7 @@ class Range:
     high: Estimate
     unit: DisplayUnit
     of_magnitude: bool = False
-    ends: str = "end"
+    ends: str = FAIL
     never: Estimate = NOTHING
     rows_failed: bool = False
     undefined: float = 0.0
@@ -336,21 +338,19 @@ class Range:
     def sentence(self) -> str:
         """Range, median, and share that never ends, as far as known."""
         parts = []
-        of_values = described_values(_noun(self), self.undefined, self.rows_failed)
-        of_values = of_values or "of the magnitudes" * self.of_magnitude
-        subject = f"{of_values} " if of_values else ""
+        of_values = described_values(noun_of(self), self.undefined, self.rows_failed)
         if isfinite(self.low.value) and isfinite(self.high.value):
             ends = self.unit.between(self.low.value, self.high.value, " and ")
-            parts.append(f"90 % {subject}lie between {ends}")
+            parts.append(f"90 %{of_values} are between {ends}")
         elif isfinite(self.low.value) and self.high.value == inf:
-            parts.append(f"5 % {subject}{self.ends} within {self.unit.text(self.low.value)}")
+            parts.append(f"5 %{of_values} are below {self.unit.text(self.low.value)}")
             if "value" in self.high.beyond:
                 parts.append("more than 5 % exceed the horizon")
         if isfinite(self.median.value):
             parts.append(f"median {self.unit.text(self.median.value)}")
         parts.append(self._never)
         if self.undefined > 0:
-            parts.append(f"{percent(self.undefined)} of the rows have none")
+            parts.append(f"{percent(self.undefined)} of the rows have no value")
         return sentence("; ".join(filter(None, parts))) if any(parts) else ""
 
     @property
@@ -358,11 +358,13 @@ class Range:
         """Share that never ends; "" if unknown, or not of a life."""
         if self.never.value == 0 and self.never.has_interval:
             most = rounded(100 * self.never.high, inf)
-            verb = self.ends + "s"
-            return f"every row {verb} (at most {most} % never {self.ends})"
+            never = "survive" if self.ends == FAIL else f"never {self.ends}"
+            return f"all {self.ends} (at most {most} % {never}, 95 % limit)"
         return f"{share_text(self.never)} never {self.ends}" if self.never.value > 0 else ""
 
 
-def _noun(described: ToleranceBound | Range) -> str:
+def noun_of(described: ToleranceBound | Range) -> str:
     """Return the noun for the values that a bound or a range describes."""
-    return "magnitudes" if described.of_magnitude else "lives" if described.is_life else "values"
+    if described.is_life:
+        return "lives" if described.ends == FAIL else "times"
+    return "magnitudes" if described.of_magnitude else "values"

@@ -11,9 +11,6 @@ from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
 from uq.text.numbers import percent, percent_interval
 
-SHARE_OF = "the share of rows that "
-"""Opening of the name of a statistic that is the probability of an event."""
-
 
 @dataclass(frozen=True)
 class TighterTolerance:
@@ -37,8 +34,8 @@ class TighterTolerance:
     law : str
         The halved scatter: ``sd 0.5 mm instead of 1``.
     promise : ToleranceBound or None
-        The current promise of the same quantile; None if an end of the interval of `after`
-        could not be promised instead.
+        The current promise of the same quantile; None if an end of the interval of `after` cannot
+        replace it.
     failed : Estimate or None
         The ends of that interval with failed rows at worst, where rows failed.
     """
@@ -139,15 +136,12 @@ class TighterTolerance:
             return f"Tightening {words}: {self.reason}."
         law = f" ({self.law})" if self.law else ""
         first = percent(self.before.value) if self.is_share else self.unit.number(self.before.value)
-        moved = f"move {self.statistic} from {first} to {self._new_number}"
-        return f"Half the scatter of {words}{law} would {moved}."
+        changed = f"change {self.statistic} from {first} to {self._new_number}"
+        return f"Halving the scatter of {words}{law} would {changed}."
 
     @property
     def promised(self) -> str:
-        """The new promise: an end of the interval; "" without one.
-
-        As in the bounds of now, failed rows are beyond it.
-        """
+        """The new promise, an end of the interval with failed rows beyond it; "" without one."""
         if self.promise is None:
             return ""
         before = self.promise.failed[isfinite(self.promise.upper)] or self.before
@@ -155,13 +149,9 @@ class TighterTolerance:
 
     @property
     def besides(self) -> str:
-        """The change for the worse of another statistic."""
-        if self.is_share:
-            does = self.statistic.removeprefix(SHARE_OF)
-            return f"But {'more' if self.rises else 'fewer'} would {does}: {self._new_number}."
-        return (
-            f"But {self.statistic} would {'rise' if self.rises else 'fall'} to {self._new_number}."
-        )
+        """The adverse change of another statistic."""
+        verb = "rise" if self.rises else "fall"
+        return f"But {self.statistic} would {verb} to {self._new_number}."
 
     @property
     def _new_number(self) -> str:

@@ -275,7 +275,7 @@ def assumptions(result: Result) -> dict[str, Fact]:
             values,
             fixed,
         ),
-        "laws_without_source": ("No source says how well these laws are known", unstated, laws),
+        "laws_without_source": ("Laws without a source", unstated, laws),
     }
     return {
         key: Fact(

@@ -3,7 +3,7 @@
 Reading order; each part imports only those above it:
 
     counts     rows without a value or less accurate than requested
-    moments    mean, standard deviation and tail
+    moments    mean, standard deviation and tail, and the share of the variance between regimes
     quantiles  quantiles, B-lives, probabilities at thresholds
     tolerance  tolerance bounds: limits for a given share of all values, with a given confidence
     table      the statistics of an output. To add one, write its maker and list it here

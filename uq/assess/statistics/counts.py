@@ -21,7 +21,7 @@ _EFFECTIVE = StatisticKind(form="number", text="{:.0f}", readers=COUNT.readers)
 
 @placed(json=5, columns=3)
 def counts(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield how many rows never end, are censored, are undefined, or failed."""
+    """Yield the numbers of rows that never end, are censored, are undefined, or failed."""
     for name in ("never", "censored", "undefined", "failed"):
         number = float(getattr(element, name).sum())
         yield Statistic((name,), name, Estimate(number), "rows", COUNT)
@@ -47,7 +47,7 @@ def effective(element: Element, context: Context) -> Iterator[Statistic]:
 
 @placed(columns=4)
 def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield how many rows state an error beyond the accuracy requested.
+    """Yield the number of rows whose stated error exceeds the requested accuracy.
 
     Rows count if their value is finite and not censored; one that states no error falls short.
     """
@@ -122,7 +122,7 @@ def error_share(element: Element, error: Element) -> float:
 
 
 def stating_none(element: Element, error: Element) -> int:
-    """Return how many rows have a value that could have an error, and state none."""
+    """Return the number of rows with a value but without a stated error."""
     return int((_may_err(element) & ~np.isfinite(error.values)).sum())
 
 

@@ -1,4 +1,4 @@
-"""Mean, standard deviation and tail, and the share of the variance that lies between regimes."""
+"""Mean, standard deviation and tail, and the share of the variance between regimes."""
 
 from collections.abc import Iterator
 from dataclasses import replace

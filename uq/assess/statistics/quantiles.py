@@ -1,4 +1,4 @@
-"""Quantiles, B-lives, probabilities at thresholds, and what exact integration adds to them."""
+"""Quantiles, B-lives, probabilities at thresholds, and the gain from exact integration."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -60,7 +60,7 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
 @placed(json=4, absent="{}")
 @bounded()
 def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield the times by which a share of rows has ended, and how many rows have not."""
+    """Yield the times by which a share of rows has ended, and the number that have not."""
     if not element.is_lifetime:
         return
     success = bool(element.declared.success)
@@ -163,7 +163,7 @@ _KIND = replace(
 
 
 def integrated(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield how many times the rows the exact integration is worth: a ratio of variances."""
+    """Yield the variance reduction factor of exact integration against plain Monte Carlo."""
     if not element.declared.scales:
         return
     why = why_not_integrated(context.rows, element)

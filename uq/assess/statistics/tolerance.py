@@ -30,7 +30,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     needed = rows_still_needed(int((element.present | element.failed).sum()), failed, *asked)
     coverage, confidence = (f"{100 * share:g}" for share in asked)
     caption = (
-        f"Tolerance bounds: with {confidence} % confidence each, {coverage} % of all lie above the"
+        f"Tolerance bounds: with {confidence} % confidence each, {coverage} % of all are above the"
         f" lower, and {coverage} % below the upper" + ", or the magnitude's" * element.is_angle
     )
     names = ("tolerance", "tolerance, ", "tolerance_")
@@ -50,8 +50,9 @@ def joint(element: Element, context: Context) -> Iterator[Statistic]:
     }
     coverage, confidence = (f"{100 * share:g}" for share in asked.tolerance or USUAL)
     caption = (
-        f"Joint bounds: with {confidence} % confidence, {coverage} % of all lie within those of"
-        f" {', '.join(asked.joint_bounds)} at once"
+        f"Joint bounds: with {confidence} % confidence, {coverage} % of all are within the"
+        f" bounds of"
+        f" {', '.join(asked.joint_bounds)} simultaneously"
     )
     names = ("joint_bounds", "joint bound, ", "joint_")
     first, *others = _bounds(

@@ -167,7 +167,7 @@ def levels(
     plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
-    """Show how much scatter is shared, own, or due to chance."""
+    """Show variance components: shared inputs, differences between units, and chance."""
     from uq.cli.sensitivity import levels as show_levels
 
     show_levels(result, output, plain, json)
@@ -321,7 +321,7 @@ def update(
     ] = None,
     model_error: Annotated[
         float | None,
-        typer.Option(min=0.0, metavar="CV", help="Scatter of reality about the model."),
+        typer.Option(min=0.0, metavar="CV", help="Model error: scatter of reality about it."),
     ] = None,
     by: given.Times = None,
     workers: given.Workers = None,

@@ -21,7 +21,7 @@ def models(
     ] = None,
     json: given.Json = False,
 ) -> None:
-    """List the models, or show what one of them declares."""
+    """List the models, or show the declarations of one of them."""
     from uq.cli import models
     from uq.cli.printing import print_json
     from uq.execution.loading import load_model
@@ -92,7 +92,7 @@ def serve(
     model: given.ModelName,
     port: Annotated[int, typer.Option(min=0, max=65535, help="0: any free one.")] = 4242,
     host: Annotated[
-        str, typer.Option(metavar="HOST", help="Whoever can reach it can run rows.")
+        str, typer.Option(metavar="HOST", help="Anyone who can reach it can run rows.")
     ] = "127.0.0.1",
 ) -> None:
     """Offer a model to other programs (UM-Bridge)."""
@@ -126,7 +126,7 @@ def plan(
     model: given.ModelReference = None,
     json: given.Json = False,
 ) -> None:
-    """Estimate what a study will take, from a few of its rows."""
+    """Estimate run time, size and interval widths of a study from a few of its rows."""
     from uq.cli.check import plan as show_plan
     from uq.cli.progress import say_plain
     from uq.cli.run import loaded

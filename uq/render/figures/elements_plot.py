@@ -21,7 +21,7 @@ _MOST_CURVES = 12
 
 
 def drawn_elements(rows: Result, output: str) -> tuple[list[Element], str]:
-    """Return the elements of an output that fit in a figure, and how many of them are drawn.
+    """Return the elements of an output that fit in a figure, and the number drawn.
 
     Parameters
     ----------

@@ -112,7 +112,7 @@ def event_probability(
         (candidate for candidate in answer(result).events if candidate.name == output), None
     )
     if event is None or event.curve is None:
-        raise InputError(f"'{output}': no input is known to decide it, or the study does not ask")
+        raise InputError(f"'{output}': it has no main driver, or the study does not ask")
     curve, colour = event.curve, INK
     edges = curve.edges / event.over_unit.per
     value, low, high = np.array([share.numbers for share in curve.shares]).T

@@ -146,7 +146,7 @@ def _leader(answer: Answer, quantity: Quantity) -> Markup:
 
 
 def _earliest(answer: Answer, quantity: Quantity) -> Iterator[Markup]:
-    """Yield the inputs that distinguish the first rows to end, and the command that shows them."""
+    """Yield the inputs that distinguish the first rows to fail, and the command to show them."""
     if quantity.earliest is None:
         return
     place = (*_place(quantity), "earliest")
@@ -154,7 +154,7 @@ def _earliest(answer: Answer, quantity: Quantity) -> Iterator[Markup]:
         yield apart
     command = Markup("<code>{}</code>").format(plain(quantity.earliest.command))
     first = keyed(answer.fact, *place, "lives")
-    yield Markup("{} To see the first: {}").format(first, command)
+    yield Markup("{} Show the first: {}").format(first, command)
 
 
 def _verdict(answer: Answer) -> Markup:
@@ -168,7 +168,7 @@ def _verdict(answer: Answer) -> Markup:
     sentences = [
         _line(levels),
         _small(again),
-        folded("What is not settled besides", unsettled),
+        folded("Other results not settled", unsettled),
     ]
     causes = [
         keyed(facts, "regimes", regime.predicate, text=regime.named_cause)
@@ -181,8 +181,8 @@ def _verdict(answer: Answer) -> Markup:
     else:
         parts += [*sentences, _line(shares)]
         decided = items([*causes, answer.starts_alike])
-        parts.append(folded("What decides the regime", decided))
-    parts.append(folded("What it assumes", items(answer.assumptions)))
+        parts.append(folded("Drivers of the regime", decided))
+    parts.append(folded("Assumptions", items(answer.assumptions)))
     if answer.failed or lead is None:
         parts.insert(0, _line(keyed(facts)))
     return _block("verdict", parts)
@@ -230,7 +230,7 @@ def _ranking(answer: Answer) -> Markup:
     if lead is None or lead.ranking is None:
         return Markup()
     ranking = lead.ranking
-    title = Markup("<h3>What it depends on</h3>{}").format(_levels(answer))
+    title = Markup("<h3>Causes of the scatter</h3>{}").format(_levels(answer))
     if ranking.leader is None:
         why = _leader(answer, lead)
         if answer.regimes_first:
@@ -256,13 +256,13 @@ def _levels(answer: Answer) -> Markup:
         track = cells.bar(level.share.value, level.share.low, level.share.high, (0.0, 1.0))
         texts = capitalized(level.words), track, whole_percent(level.share), level.inputs_named
         blocks.append(_BAR.format(*map(shown, texts)))
-    return Markup("").join([*blocks, _small(f"Share of the variance of {answer.levels.subject}.")])
+    return Markup("").join([*blocks, _small(sentence(f"share of {answer.levels.variance}"))])
 
 
 def _first(answer: Answer) -> Markup:
-    """Return the block on the first rows to end, with the inputs that distinguish them."""
+    """Return the block on the first rows to fail, with the inputs that distinguish them."""
     lines = [] if answer.lead is None else [*map(_line, _earliest(answer, answer.lead))]
-    title = Markup("<h3>What ends first</h3>")
+    title = Markup("<h3>Earliest failures</h3>")
     return _block("first", [title, *lines]) if lines else Markup()
 
 

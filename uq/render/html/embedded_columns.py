@@ -176,7 +176,7 @@ def _curve(element: Element) -> str:
     """Return the label of the curve drawn for an output."""
     if element.declared.success:
         return "Share that has not yet succeeded"
-    return "Share that outlives each time" if element.is_lifetime else "Share above each value"
+    return "Share that survives each time" if element.is_lifetime else "Share above each value"
 
 
 def _states(element: Element) -> NDArray[np.int_]:

@@ -85,7 +85,7 @@ _BYTES_OF_NUMBER = 8
 
 QUARTERS = (
     "Of the chosen rows, the share in each quarter of all rows: 25 % each where an input makes no"
-    " difference. Of 100 rows, a quarter holds between 17 and 34 % by chance alone, of 1000 between"
+    " difference. Of 100 rows, a quarter contains 17 to 34 % by chance alone, of 1000 between"
     " 22 and 28 %. The inputs that differ most come first."
 )
 
@@ -159,7 +159,7 @@ def _absence(count: int, total: int) -> str:
 def why_no_rows(findings: Findings) -> str:
     """Return the reason why a page cannot compute with the rows of a result; "" if it can."""
     if findings.result.has_weights:
-        return "Inspections have weighted the rows, and a page computes with rows that count alike."
+        return "Inspections have weighted the rows, and a page needs rows of equal weight."
     if not len(findings.rows):
         return f"No row of design '{findings.result.design_name}' follows the laws of the inputs."
     if any(findings.rows.elements(_outputs(findings))):
@@ -292,7 +292,7 @@ def _categories(rows: Result) -> Iterator[dict[str, Any]]:
 def _note(elements: Sequence[Element]) -> str:
     """Return the note that explains counts beside the other numbers of a page."""
     integrated = dict.fromkeys(name for element in elements for name in _integrated(element))
-    words = "Counted, without intervals: those of all rows stand under the outputs."
+    words = "Counted, without intervals: intervals of all rows are under the outputs."
     if not integrated:
         return words
     names = " and ".join(map(called, integrated))

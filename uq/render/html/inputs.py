@@ -1,4 +1,4 @@
-"""The inputs in a report: laws, sources, and how well each number is known."""
+"""The inputs in a report: laws, sources, and the quality of each number."""
 
 from collections.abc import Iterator
 from math import floor, log10

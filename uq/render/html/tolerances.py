@@ -1,4 +1,4 @@
-"""Other tolerances: weights of rows for each stop of a slider, and what Python estimates there."""
+"""Other tolerances: weights of rows at each stop of a slider, and the estimates there."""
 
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -296,9 +296,7 @@ def _promised_then(
 
 def _then(bound: ToleranceBound, then: float, studied: float) -> str:
     if not isfinite(then) or (bound.is_life and then <= 0):
-        return (
-            "What could then be promised is not known: too many rows failed, or too few carry it."
-        )
+        return "No bound can be estimated: too many rows failed, or too few carry weight."
     return plain(printed(bound.moved_end(then, studied)))
 
 

@@ -32,8 +32,7 @@ def lifetime():
 def test_the_promise_of_a_life_is_its_lower_tolerance_bound_rounded_down(lifetime):
     ds, conclusions = lifetime
     assert conclusions.lead.promise.basis == (
-        "Tolerance bound from order statistics: value 39 of 1 000 in order, valid for any"
-        " distribution."
+        "Tolerance bound from order statistics (rank 39 of 1 000), valid for any distribution."
     )
     (days,) = numbers(
         "With 95 % confidence, at least 95 % last longer than # days.",
@@ -48,7 +47,8 @@ def test_the_promise_of_a_life_is_its_lower_tolerance_bound_rounded_down(lifetim
 def test_the_likely_range_is_that_of_the_quantiles(lifetime):
     ds, conclusions = lifetime
     low, high, median, never = numbers(
-        r"90 % lie between # and # days; median # days; every row ends \(at most # % never end\)\.",
+        r"90 % of lives are between # and # days; median # days; all fail \(at most # % survive,"
+        r" 95 % limit\)\.",
         conclusions.lead.range.sentence,
     )
     assert never == pytest.approx(100 * (1 - 0.025**1e-3), abs=0.005)  # no row of 1000
@@ -61,14 +61,14 @@ def test_the_likely_range_is_that_of_the_quantiles(lifetime):
 def test_a_threshold_has_its_probability_and_what_decides_it(lifetime):
     ds, conclusions = lifetime
     (event,) = conclusions.lead.events
-    *shown, at = numbers(r"# % \(# to # %\) end within # days\.", event.sentence)
+    *shown, at = numbers(r"# % \(# to # %\) fail within # days\.", event.sentence)
     probability = summarised(ds)["outputs"]["life"]["thresholds"][repr(10 * DAY)]["below"]
     assert at == 10
     ends = [100 * probability[key] for key in ("value", "low", "high")]
     assert shown == pytest.approx(ends, abs=0.05)
     least, below, most, above = numbers(
-        r"Decided most by rate: from # % where it is below # pm s⁻¹"
-        r" to # % where it is above # pm s⁻¹\.",
+        r"Main driver: rate. Over rate, the share ranges from # % below # pm s⁻¹"
+        r" to # % above # pm s⁻¹\.",
         event.decided_by,
     )
     rate, life = ds["rate"].values, ds["life"].values
@@ -84,7 +84,9 @@ def test_an_angle_is_promised_by_its_magnitude_in_degrees():
     ds = with_output(linear(samples=200), "turn", turn, "angle")
     ds["turn"].attrs["units"] = "rad"
     lead = answer(asking(ds, outputs=["turn"], thresholds={"turn": 0.4})).lead
-    (bound,) = numbers("With 95 % confidence, at least 95 % stay within #°.", lead.promise.sentence)
+    (bound,) = numbers(
+        "With 95 % confidence, at least 95 % of magnitudes are below #°.", lead.promise.sentence
+    )
     assert np.degrees(lead.promise.upper) == pytest.approx(bound, rel=5e-3) and bound > 27
     share, _, _, at = numbers(
         r"# % \(# to # %\) exceed # rad in magnitude\.", lead.events[0].sentence
@@ -97,7 +99,9 @@ def test_rows_that_are_not_independent_give_a_cautious_quantile_and_the_reason()
     ds = linear("saltelli", samples=64, replicates=4)
     lead = answer(ds).lead
     low, cautious, high, bold = numbers(
-        "95 % stay above #, cautiously #; 95 % stay below #, cautiously #.", lead.promise.sentence
+        r"95 % of values are above # \(conservative bound: #\); 95 % of values are below #"
+        r" \(conservative bound: #\)\.",
+        lead.promise.sentence,
     )
     quantiles = summarised(ds)["outputs"]["y"]["quantiles"]
     shown = [quantiles["0.05"]["value"], quantiles["0.05"]["low"]]
@@ -132,7 +136,9 @@ def test_few_rows_promise_nothing(rows):
     conclusions = answer(linear(samples=rows))
     assert "confidence" not in repr(conclusions)
     assert conclusions.lead.promise.sentence == ""
-    assert re.fullmatch(r"No tolerance bound: it needs \d+ rows\.", conclusions.lead.promise.basis)
+    assert re.fullmatch(
+        r"No tolerance bound: \d+ rows are required\.", conclusions.lead.promise.basis
+    )
     assert conclusions.lead.ranking.leader is None
 
 

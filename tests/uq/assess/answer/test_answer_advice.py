@@ -44,14 +44,14 @@ def test_an_assumed_law_that_matters_is_measured_first(lifetime):
     ds, conclusions = lifetime
     assert [advice.rule for advice in conclusions.advice] == ["measure", "tighten"]
     assert conclusions.advice[0].text == (
-        "Measure rate first: it matters most to how many end within 10 days, and its law is"
+        "Measure rate first: it matters most for the share that fail within 10 days, and its law is"
         " assumed."
     )
     measured_rate = ds.copy()
     measured_rate["rate"].attrs["source"] = "given by the supplier"
     conclusions = answer(measured_rate)
     assert [advice.rule for advice in conclusions.advice] == ["tighten", "nothing"]
-    assert conclusions.advice[1].text.endswith(", and no law that matters is an assumption.")
+    assert conclusions.advice[1].text.endswith(", and no influential law is assumed.")
 
 
 def test_a_law_of_which_no_source_says_how_well_it_is_known_is_asked_for(lifetime):
@@ -59,8 +59,8 @@ def test_a_law_of_which_no_source_says_how_well_it_is_known_is_asked_for(lifetim
     unstated = ds.copy()
     unstated["rate"].attrs["source"] = "the supplier"
     first, *_, last = answer(unstated).advice
-    assert first.rule == "source" and first.text.startswith("State how well rate is known: ")
-    assert last.text == "Nothing else: what the study asks is settled."
+    assert first.rule == "source" and first.text.startswith("Add a 'source' for rate (given")
+    assert last.text == "Nothing else is needed: all questions of the study are settled."
 
 
 def test_a_range_of_designs_is_neither_measured_nor_tightened(lifetime):
@@ -83,8 +83,9 @@ def test_half_the_scatter_is_what_the_weighted_rows_say(lifetime):
     ds, conclusions = lifetime
     tolerance = next(advice.tightened for advice in conclusions.advice if advice.rule == "tighten")
     _, now, then, low, high = numbers(
-        r"Half the scatter of rate \(sigma 0.25 instead of 0.5\) would move the share of rows that"
-        r" end within # days"
+        r"Halving the scatter of rate \(sigma 0.25 instead of 0.5\) would change the share of"
+        r" rows that"
+        r" fail within # days"
         r" from # % to # % \(# to # %\)\.",
         tolerance.sentence,
     )
@@ -146,7 +147,7 @@ def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_inpu
     event = conclusions.lead.events[0]
     assert event.share.value > 0.5
     share, low, high = numbers(
-        r"So that more exceed 10 mm, keep x4 [^:]*: # % \(# to # %\) do there\.",
+        r"To increase the share that exceed 10 mm, keep x4 [^:]*: # % \(# to # %\) do there\.",
         conclusions.advice[1].text,
     )
     most = event.curve.shares[event.curve.most]
@@ -154,11 +155,11 @@ def test_where_less_scatter_does_not_help_the_answer_says_where_to_keep_the_inpu
     assert most.low > event.share.high
 
 
-@pytest.mark.parametrize(("wanted", "side"), [("above", "stay above"), ("below", "stay below")])
+@pytest.mark.parametrize(("wanted", "side"), [("above", "are above"), ("below", "are below")])
 def test_the_side_that_is_wanted_is_promised_and_advised(wanted, side):
     asked = {"outputs": ["y"], "thresholds": {"y": 5.0}, "wanted": {"y": wanted}}
     conclusions = answer(asking(linear(samples=400), **asked))
-    bound = rf"With 95 % confidence, at least 95 % {side} [\d.]+\."
+    bound = rf"With 95 % confidence, at least 95 % of values {side} [\d.]+\."
     assert re.fullmatch(bound, conclusions.lead.promise.sentence)
     (remedy,) = (each for each in conclusions.advice if each.rule in ("tighten", "keep"))
     if remedy.rule == "tighten":
@@ -166,7 +167,7 @@ def test_the_side_that_is_wanted_is_promised_and_advised(wanted, side):
         assert after > before if wanted == "above" else after < before
     else:
         assert remedy.text.startswith(
-            f"So that {'more' if wanted == 'above' else 'fewer'} exceed 5"
+            f"To {'increase' if wanted == 'above' else 'reduce'} the share that exceed 5, keep "
         )
 
 
@@ -182,7 +183,7 @@ def test_a_large_angle_may_be_wanted():
     assert answer(kinds(samples=100, analysis=asked)).lead.wants_more is False
     lead = answer(kinds(samples=100, analysis=asked | {"wanted": {"angle": "above"}})).lead
     assert lead.wants_more
-    assert "at least 95 % of the defined magnitudes exceed" in lead.promise.sentence
+    assert "at least 95 % of defined magnitudes are above" in lead.promise.sentence
 
 
 def test_more_successes_and_fewer_other_ends_are_better():

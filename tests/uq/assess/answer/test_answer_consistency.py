@@ -186,7 +186,7 @@ def test_contradictions_are_noticed():
     lead = conclusions.lead
     event = replace(lead.events[0], ranking=Ranking("", "", reason="no", is_flat=True))
     flat = replace(conclusions, quantities=(replace(lead, events=(event,)),))
-    assert any("Half the scatter" in text for text in denied_by_each_other(flat))
+    assert any("Halving the scatter" in text for text in denied_by_each_other(flat))
     assert list(denied_by_each_other(conclusions)) == []
 
 

@@ -22,12 +22,15 @@ def test_enough_rows_say_so_with_what_another_seed_would_find():
     ds, conclusions = lifetime()
     assert conclusions.enough.question == () and not conclusions.enough.errors
     low, high = numbers(
-        r"The rows are enough: with another seed, the 5 % quantile would lie between # and #"
+        r"Sample size is sufficient: in a repeat with another seed, the 5 % quantile would be #"
+        r" to #"
         r" days \(95 %\); rate would again contribute most\.",
         conclusions.enough.sentence,
     )
     assert low < conclusions.lead.promise.quantiles[0].value / 86400 < high
-    assert verdict(Findings(Result(ds))) == ["Enough rows: what the study asks is settled."]
+    assert verdict(Findings(Result(ds))) == [
+        "Sample size is sufficient for all results of the study."
+    ]
     assert conclusions.enough.sentence.split(":")[0] in fragment(conclusions)
 
 
@@ -35,7 +38,7 @@ def test_too_few_rows_say_so():
     ds = linear(samples=200)
     ds = with_output(ds, "rare", np.r_[np.ones(8), np.zeros(192)] + 1e-6 * ds["x1"].values)
     conclusions = answer(asking(ds, outputs=["rare"], thresholds={"rare": 0.5}))
-    sentence = "The rows are not enough to settle all of this. With another seed, "
+    sentence = "Sample size is not sufficient for all of this. In a repeat with another seed, "
     assert conclusions.enough.sentence.startswith(sentence)
     assert "rows" in rules(conclusions)
 
@@ -47,15 +50,15 @@ def test_rows_are_advised_for_what_the_study_is_about_alone():
     asked = asking(ds, outputs=["y", "even"])
     conclusions = answer(asked)
     assert "rows" not in rules(conclusions) and conclusions.enough.sentence.startswith(
-        "The rows are enough: "
+        "Sample size is sufficient: "
     )
     (sentence,) = conclusions.enough.others
     assert sentence.startswith("The order of x") and "(meaning of even)" in sentence
-    assert "What is not settled besides</summary><ul><li>The order of x" in fragment(conclusions)
+    assert "Other results not settled</summary><ul><li>The order of x" in fragment(conclusions)
     first, second = verdict(Findings(Result(asked)))
-    assert first == "Enough rows for what the study is about."
-    assert second.startswith("Not enough rows: the order of x")
-    assert "what the study asks is settled" not in repr(conclusions)
+    assert first == "Sample size is sufficient for the main question of the study."
+    assert second.startswith("More rows needed: the order of x")
+    assert "all questions of the study are settled" not in repr(conclusions)
     assert "rows" in rules(answer(asking(ds, outputs=["even"])))
 
 
@@ -64,11 +67,11 @@ def test_inputs_that_many_rows_do_not_tell_apart_contribute_alike():
     ds = with_output(ds, "even", sum(ds[name].values for name in ("x1", "x2", "x3", "x4")))
     conclusions = answer(asking(ds, outputs=["even"]))
     sentence = conclusions.lead.ranking.sentence
-    assert re.fullmatch(r"(x\d, ){3}x\d contribute alike: S1 is 0\.2\d at most\.", sentence), (
-        sentence
-    )
+    assert re.fullmatch(
+        r"(x\d, ){3}x\d contribute about equally: S1 is at most 0\.2\d\.", sentence
+    ), sentence
     assert "rows" not in rules(conclusions) and conclusions.enough.sentence.startswith(
-        "The rows are enough: "
+        "Sample size is sufficient: "
     )
 
 
@@ -79,7 +82,7 @@ def test_where_many_inputs_contribute_little_none_explains_much():
     conclusions = answer(asking(with_output(ds, "faint", faint), outputs=["faint"]))
     sentence = conclusions.lead.ranking.sentence
     assert re.fullmatch(
-        r"No single input explains much: S1 of (x\d, ){3}x\d is 0\.0\d at most\.", sentence
+        r"No single input explains much: S1 of (x\d, ){3}x\d is at most 0\.0\d\.", sentence
     ), sentence
     assert conclusions.lead.ranking.denies_a_leader and "rows" not in rules(conclusions)
 
@@ -89,24 +92,26 @@ def test_where_the_rows_themselves_err_more_than_sampling_more_of_them_do_not_he
     conclusions = answer(with_output(ds, "y_error", np.full(1000, 0.2)))
     half = 1.96 * ds["y"].values.std() / 1000**0.5
     solver_error, sampling = numbers(
-        r"Compute more accurate rows before more of them \(finer settings or longer averages\):"
-        r" their numerical error may move the mean by #, sampling by #\.",
+        r"Reduce numerical error \(finer settings or longer averages\) before adding rows: it may"
+        r" change the mean by #, sampling by #\.",
         conclusions.advice[0].text,
     )
     assert solver_error == 0.2 and sampling == pytest.approx(half, rel=0.03)
     assert rules(conclusions)[0] == "finer" and not {"rows", "nothing"} & {*rules(conclusions)}
     assert conclusions.enough.sentence.startswith(
-        "More rows alone would not help, more accurate ones would. With another seed, "
+        "Numerical error dominates: more accurate rows would help, more rows not. In a repeat"
+        " with another seed, "
     )
     exact = answer(with_output(ds, "y_error", np.full(1000, 0.01)))
     assert "finer" not in rules(exact)
-    assert exact.enough.sentence.startswith("The rows are enough: ")
+    assert exact.enough.sentence.startswith("Sample size is sufficient: ")
 
 
 def test_where_the_study_is_about_the_regimes_their_shares_decide():
     conclusions = answer(kinds(samples=400, analysis={"outputs": ["regime", "work"]}))
     low, high = numbers(
-        r"The rows are enough: with another seed, # to # % would be slow \(95 %\).*",
+        r"Sample size is sufficient: in a repeat with another seed, # to # % would be slow \(95"
+        r" %\).*",
         conclusions.enough.sentence,
     )
     assert low < 100 * conclusions.regimes[0].share.value < high
@@ -125,13 +130,18 @@ def test_numbers_of_the_errors_and_the_shares_can_be_traced():
 
 def test_without_rows_or_intervals_nothing_is_called_enough():
     few = answer(asking(linear("latin-hypercube", samples=64), outputs=["y"]))
-    assert "enough" not in few.enough.sentence and "rows" in rules(few)
+    assert "is sufficient" not in few.enough.sentence and "rows" in rules(few)
     conclusions = answer(linear(samples=1))
-    assert "are enough" not in conclusions.enough.sentence and "rows" in rules(conclusions)
+    assert "is sufficient" not in conclusions.enough.sentence and "rows" in rules(conclusions)
 
 
 def test_regimes_that_are_not_settled_are_said_in_a_sentence():
     conclusions = answer(kinds(samples=64, analysis={"outputs": ["regime", "work"]}))
     (rows,) = (advice.text for advice in conclusions.advice if advice.rule == "rows")
-    assert ": how many are slow is known to " in rows or ": how many are fast is known to " in rows
-    assert "how many slow" not in repr(conclusions) and "how many fast" not in repr(conclusions)
+    assert (
+        ": the share that are slow is uncertain" in rows
+        or ": the share that are fast is uncertain" in rows
+    )
+    assert "the share that slow" not in repr(conclusions) and "the share that fast" not in repr(
+        conclusions
+    )

@@ -18,7 +18,7 @@ def test_the_level_that_decides_is_named_with_its_share():
     ds = nested_result(levels=levels, samples=300, units=1)
     conclusions = answer(ds)
     share, low, high, rest, *_ = numbers(
-        r"Chance \(x4 and x3\) decides its scatter: # % \(# to # %\) of the variance,"
+        r"Chance \(x4 and x3\) explains # % \(# to # %\) of the variance,"
         r" the machine # % \(# to # %\)\.",
         conclusions.levels.sentence,
     )
@@ -52,7 +52,8 @@ def test_the_start_is_called_by_its_name_where_it_decides_the_regime():
     conclusions = answer(ds)
     word = conclusions.regimes[0].predicate
     share, low, high, *_ = numbers(
-        rf"The start \(x2\) decides whether it is {word}: # % \(# to # %\) of the variance,"
+        r"Initial conditions \(x2\) explain # % \(# to # %\) of the variance"
+        rf" in whether it is {word},"
         r" the machine # % \(# to # %\)\.",
         conclusions.levels.sentence,
     )
@@ -65,9 +66,15 @@ def test_the_start_is_called_by_its_name_where_it_decides_the_regime():
     )
     assert another == pytest.approx(100 * apart, abs=0.06)
     assert conclusions.levels.sentence in conclusions.lines
-    assert "Expect little of tolerances: the start decides" in repr(conclusions)
+    assert "Tighter tolerances would help little: initial conditions explain most" in repr(
+        conclusions
+    )
     page = fragment(conclusions)
-    assert page.index("answer-promise") < page.index("The start (x2)") < page.index("Value of the")
+    assert (
+        page.index("answer-promise")
+        < page.index("Initial conditions (x2)")
+        < page.index("Value of the")
+    )
     key = "answer/levels/shares/chance/value"
     assert trace(ds, key)["value"] == conclusions.levels.levels[0].share.value
     assert key in page
@@ -78,9 +85,9 @@ def test_single_inputs_are_called_so_where_another_level_decides():
     ds = of_regimes(0.55, samples=1000, of_pairs=True)
     conclusions = answer(ds)
     assert conclusions.levels.leader.inputs == ("x2", "x3")
-    by = "x1, though it alone explains only 21 % (15 to 26 %)"
+    by = "x1, although it alone explains only 21 % (15 to 26 %)"
     assert conclusions.regimes[0].decided_by.startswith(
-        f"Of single inputs, decided most by {by}: from "
+        f"Main single input: {by}. Over x1, the share ranges from "
     )
     traced = trace(ds, f"answer/regimes/{conclusions.regimes[0].predicate}/decided_by")
     assert traced["sentence"] == conclusions.regimes[0].decided_by and traced["equal"]
@@ -93,13 +100,15 @@ def test_single_inputs_are_called_so_where_another_level_decides():
 
 def test_where_no_level_decides_alone_the_shares_are_said():
     conclusions = answer(of_regimes(0.3))
-    assert conclusions.levels.sentence.startswith("No level alone decides whether it is ")
+    assert conclusions.levels.sentence.startswith(
+        "No level clearly explains most of the variance in whether"
+    )
     assert not any(advice.rule == "chance" for advice in conclusions.advice)
 
 
 def test_without_a_start_it_is_called_chance():
     conclusions = answer(of_regimes(0.95, is_initial=False))
-    assert conclusions.levels.sentence.startswith("Chance (x2) decides")
+    assert conclusions.levels.sentence.startswith("Chance (x2) explains")
 
 
 def test_a_study_of_single_rows_has_no_levels():
@@ -111,7 +120,7 @@ def test_a_start_that_is_the_same_in_all_rows_is_said():
     assert answer(ds).starts_alike == ""
     attrs = {"role": "fixed", "long_name": "speed", "initial": 1}
     fixed = ds.assign(initial_speed=((), 0.0, attrs))
-    sentence = "Whether the start decides the regime is not known: initial speed is fixed."
+    sentence = "The effect of initial conditions on the regime is unknown: initial speed is fixed."
     assert answer(fixed).starts_alike == sentence and sentence in repr(answer(fixed))
     ds["x2"].attrs["initial"] = 1
     assert answer(ds).starts_alike == ""

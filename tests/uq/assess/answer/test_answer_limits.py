@@ -27,7 +27,7 @@ def falling(x):
 def test_the_range_of_a_known_curve_is_rare_on_average():
     result = limit(falling)
     low, high = numbers(
-        r"With 95 % confidence, fewer than 5 % fail on average where power is between # and #\.",
+        r"With 95 % confidence, fewer than 5 % fail on average if power is between # and #\.",
         result.sentence,
     )
     assert low == pytest.approx(result.at, abs=0.01) and high == pytest.approx(result.end, abs=0.01)
@@ -54,9 +54,10 @@ def test_the_average_over_the_range_is_rare(chance):
 def best(chance, **options):
     """Return the ends of the best of twelve parts, and the interval of the share that fails."""
     sentence = limit(chance, **options).sentence
-    settled_sentence = sentence.replace("; whether fewer than 5 % do is not settled", "")
+    settled_sentence = sentence.replace("; it is not settled whether fewer than 5 % do", "")
     many, *ends = numbers(
-        r"Averaged over the best of # parts of power \(# to #\), # to # % fail\.", settled_sentence
+        r"Even in the best of # parts of power \(# to #\), # to # % fail on average\.",
+        settled_sentence,
     )
     assert many == 12
     return ends
@@ -82,7 +83,7 @@ def test_the_interval_covers_the_average_of_the_best_part(least):
 def test_a_spike_within_the_range_denies_no_average():
     """At a few values all fail, where the range is rare on average."""
     result = limit(lambda x: np.where(x > 0.9999, 1.0, np.where(x < 0.5, 1 - x, 0.01)), rows=12000)
-    assert result.at < 0.6 and " fail on average where " in result.sentence
+    assert result.at < 0.6 and " fail on average if " in result.sentence
 
 
 @pytest.mark.parametrize(
@@ -90,12 +91,12 @@ def test_a_spike_within_the_range_denies_no_average():
     [
         (
             lambda x: 0.02 + 0.5 * np.sin(np.pi * x) + 0.3 * (x > 0.95),
-            "No limit of power: how many fail does not change steadily with it.",
+            "No limit of power: the share that fail is not monotonic in it.",
         ),
         (
             lambda x: 0.05 + 0.6 * (1 - x),
-            "Averaged over the best of 12 parts of power (0.913 to 1), 3.5 to 8.7 % fail;"
-            " whether fewer than 5 % do is not settled.",
+            "Even in the best of 12 parts of power (0.913 to 1), 3.5 to 8.7 % fail on average;"
+            " it is not settled whether fewer than 5 % do.",
         ),
     ],
 )
@@ -116,7 +117,7 @@ def test_how_weak_the_motors_may_be():
     conclusions = answer(ds)
     event = conclusions.lead.events[0]
     low, high = numbers(
-        r"With 95 % confidence, more than 95 % succeed within 20 s on average where x4 is between"
+        r"With 95 % confidence, more than 95 % succeed within 20 s on average if x4 is between"
         r" # and #\.",
         event.limited,
     )
@@ -146,7 +147,7 @@ def test_one_part_that_alone_is_rare_is_a_range():
     common, rare = Estimate(0.5, 0.4, 0.6), Estimate(0.01, 0.0, 0.04)
     curve = EventCurve(np.array([0.0, 1.0, 2.0]), [common, rare])
     sentence = limit_of(curve, "power", DisplayUnit(), "fail", True).sentence
-    assert sentence.endswith("fewer than 5 % fail on average where power is between 1 and 2.")
+    assert sentence.endswith("fewer than 5 % fail on average if power is between 1 and 2.")
 
 
 def test_a_value_is_a_limit_where_the_event_is_rare_at_it():
@@ -154,14 +155,12 @@ def test_a_value_is_a_limit_where_the_event_is_rare_at_it():
     for worst, bound in ((3.0, "at most 2.5"), (2.0, "at most 1.5")):
         hits = (grade >= worst).astype(float)
         result = limit_of(event_curve(hits, grade), "grade", DisplayUnit(), "fail", True)
-        assert (
-            result.sentence == f"With 95 % confidence, fewer than 5 % fail where grade is {bound}."
-        )
+        assert result.sentence == f"With 95 % confidence, fewer than 5 % fail if grade is {bound}."
 
 
 def test_without_intervals_no_limit_is_denied():
     shares = [Estimate(share) for share in (0.3, 0.1, 0.0, 0.0)]
     result = limit_of(EventCurve(np.arange(5.0), shares), "power", DisplayUnit(), "fail", True)
     assert result.sentence == (
-        "Whether fewer than 5 % fail where power is between 3 and 4 is not settled."
+        "It is not settled whether fewer than 5 % fail if power is between 3 and 4."
     )

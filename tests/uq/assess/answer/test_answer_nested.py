@@ -42,20 +42,22 @@ def nested():
 def test_units_promise_a_quantile_with_the_reason(nested):
     _, conclusions, statistics = nested
     promise = conclusions.lead.promise
-    days, cautious = numbers("95 % last longer than # days, cautiously # days.", promise.sentence)
+    days, cautious = numbers(
+        r"95 % last longer than # days \(conservative bound: # days\)\.", promise.sentence
+    )
     quantile = statistics["quantiles"]["0.05"]
     assert days * DAY == pytest.approx(quantile["value"], rel=5e-3)
     assert quantile["low"] * 0.99 < cautious * DAY <= quantile["low"]
     assert promise.basis == (
         "No tolerance bound: the rows of one sample are not independent."
-        " Instead, conservatively: the end of the 95 % interval."
+        " The conservative bound is the end of the 95 % interval of the quantile."
     )
 
 
 def test_lives_that_never_end_are_said_in_the_range(nested):
     _, conclusions, statistics = nested
     low, median, *never = numbers(
-        r"5 % end within # days; median # days; # % \(# to # %\) never end\.",
+        r"5 % of lives are below # days; median # days; # % \(# to # %\) never fail\.",
         conclusions.lead.range.sentence,
     )
     share = conclusions.lead.range.never
@@ -69,12 +71,12 @@ def test_lives_that_never_end_are_said_in_the_range(nested):
 def test_a_probability_rests_on_samples(nested):
     ds, conclusions, statistics = nested
     (event,) = conclusions.lead.events
-    share, low, high = numbers(r"# % \(# to # %\) end within 10 days\.", event.sentence)
+    share, low, high = numbers(r"# % \(# to # %\) fail within 10 days\.", event.sentence)
     probability = statistics["thresholds"][repr(10 * DAY)]["below"]
     shown = [100 * probability[key] for key in ("value", "low", "high")]
     assert [share, low, high] == pytest.approx(shown, abs=0.05)
     assert high - low > 2 * 1.96 * (share * (100 - share) / 2400) ** 0.5  # as of 2400 rows
-    assert "most by rate" in event.decided_by
+    assert "Main single input: rate." in event.decided_by
 
 
 def test_rows_to_add_are_those_of_samples(nested):
@@ -94,8 +96,9 @@ def test_half_the_scatter_is_what_the_weighted_rows_say(nested):
     ds, conclusions, _ = nested
     tolerance = next(advice.tightened for advice in conclusions.advice if advice.rule == "tighten")
     now, then, low, high = numbers(
-        r"Half the scatter of rate \(sigma 0.25 instead of 0.5\) would move the share of rows that"
-        r" end within 10 days"
+        r"Halving the scatter of rate \(sigma 0.25 instead of 0.5\) would change the share of"
+        r" rows that"
+        r" fail within 10 days"
         r" from # % to # % \(# to # %\)\.",
         tolerance.sentence,
     )
@@ -109,10 +112,12 @@ def test_rows_of_samples_in_replicates_are_weighted():
     conclusions = answer(ds)
     assert conclusions.lead.promise.basis == (
         "No tolerance bound: the rows of one sample are not independent."
-        " Instead, conservatively: the end of the 95 % interval."
+        " The conservative bound is the end of the 95 % interval of the quantile."
     )
     (tighten,) = [advice.text for advice in conclusions.advice if advice.rule == "tighten"]
-    assert re.match(r"Half the scatter of rate .* would move the share of rows that end", tighten)
+    assert re.match(
+        r"Halving the scatter of rate .* would change the share of rows that fail", tighten
+    )
     assert "inf" not in repr(conclusions)
 
 
@@ -120,7 +125,7 @@ def test_a_random_model_is_answered_as_any_other():
     ds = computed(noisy("monte-carlo", 400, 1))
     conclusions, statistics = answer(ds), summarised(ds)["outputs"]["y"]
     low, high, median = numbers(
-        "90 % lie between # and #; median #.", conclusions.lead.range.sentence
+        "90 % of values are between # and #; median #.", conclusions.lead.range.sentence
     )
     shown = [statistics["quantiles"][p]["value"] for p in ("0.05", "0.95", "0.5")]
     assert [low, high, median] == pytest.approx(shown, rel=5e-3)
@@ -143,12 +148,15 @@ def test_a_bound_that_contradicts_the_quantile_is_no_promise():
     promise, statistics = answer(ds).lead.promise, summarised(ds)["outputs"]["life"]
     assert statistics["tolerance"]["lower"] > statistics["quantiles"]["0.05"]["value"]
     (days,) = numbers(
-        "No tolerance bound: counted from the rows, # days, it lies beyond the quantile itself."
-        " Instead, conservatively: the end of the 95 % interval.",
+        "No tolerance bound: the value from order statistics, # days, contradicts the quantile"
+        " estimate."
+        " The conservative bound is the end of the 95 % interval of the quantile.",
         promise.basis,
     )
     assert days * DAY == pytest.approx(statistics["tolerance"]["lower"], rel=5e-3)
-    shown = numbers("95 % last longer than # days, cautiously # days.", promise.sentence)
+    shown = numbers(
+        r"95 % last longer than # days \(conservative bound: # days\)\.", promise.sentence
+    )
     ends = [statistics["quantiles"]["0.05"][key] / DAY for key in ("value", "low")]
     assert shown == pytest.approx(ends, rel=1e-2) and shown[1] <= ends[1]
 
@@ -170,4 +178,4 @@ def test_a_regime_that_no_first_row_of_a_sample_has_is_not_ranked(nested):
     attrs |= {"flag_values": np.int8([0, 1]), "flag_meanings": "calm rough"}
     conclusions = answer(ds.assign(regime=("row", rare.astype(np.int8), attrs)))
     (rough,) = [regime for regime in conclusions.regimes if regime.predicate == "rough"]
-    assert rough.decided_by == "No ranking of the inputs: no row that it could rest on is rough."
+    assert rough.decided_by == "No ranking of the inputs: none of the ranked rows is rough."

@@ -79,7 +79,8 @@ def test_an_event_beyond_the_horizon_is_not_settled_by_rows():
     assert conclusions.lead.promise.sentence.endswith("last longer than 5 days.")
     (advice,) = conclusions.advice
     assert advice.text == (
-        "More rows would not help: how many end within 10 days is not known: it is after the last"
+        "More rows would not help: the share that fail within 10 days cannot be estimated: it is"
+        " after the last"
         " observation."
     )
     assert "is settled" not in repr(conclusions)
@@ -87,19 +88,21 @@ def test_an_event_beyond_the_horizon_is_not_settled_by_rows():
 
 def test_where_none_ends_the_rows_are_enough():
     conclusions = answer(none_ends())
-    assert conclusions.lead.first.sentence == "0 % (0 to 1.8 %) end within 10 days."
-    assert conclusions.enough.sentence.startswith("The rows are enough: with another seed, 0 to ")
+    assert conclusions.lead.first.sentence == "0 % (0 to 1.8 %) fail within 10 days."
+    assert conclusions.enough.sentence.startswith(
+        "Sample size is sufficient: in a repeat with another seed, 0 to "
+    )
     assert conclusions.lead.earliest is None
 
 
 def test_a_single_life_has_the_unit_of_a_person():
     conclusions = answer(one_ends())
-    assert conclusions.lead.earliest.first == "Row 0 (3 days) ends first."
+    assert conclusions.lead.earliest.first == "Row 0 (3 days) fails first."
 
 
 def test_one_row_settles_nothing():
     conclusions = answer(one_row())
-    assert conclusions.enough.sentence.startswith("The rows are not enough to settle all of this.")
+    assert conclusions.enough.sentence.startswith("Sample size is not sufficient for all of this.")
     assert [advice.rule for advice in conclusions.advice] == ["rows"]
 
 

@@ -17,9 +17,9 @@ from uq.stats.estimate import Estimate
 
 def test_intermingled_regimes_say_how_little_better_known_inputs_tell():
     assert intermingled(Estimate(0.5, 0.4, 0.6)).sentence == (
-        "The regimes are intermingled: with all inputs known twice as well, 70.7 % (66.0 to 75.8 %)"
-        " of the uncertain outcomes would stay uncertain; between smooth boundaries, 50 %"
-        " (uncertainty exponent 0.5)."
+        "The regimes are intermingled: with half the uncertainty of all inputs, 70.7 % (66.0 to"
+        " 75.8 %) of the uncertain outcomes would remain uncertain, against 50 % at smooth"
+        " boundaries (uncertainty exponent 0.5)."
     )
 
 
@@ -57,7 +57,7 @@ def test_screening_ranks_in_the_unit_of_the_output_and_says_what_it_cannot_promi
     )
     (rows,) = [advice.text for advice in conclusions.advice if advice.rule == "rows"]
     assert rows == (
-        "To know what can be promised: the rows of a 'morris' design do not follow the laws of the"
+        "To obtain a bound: the rows of a 'morris' design do not follow the laws of the"
         " inputs; use 'monte-carlo'."
     )
 
@@ -72,14 +72,14 @@ def piled(at):
 def test_no_bound_is_promised_that_no_row_can_exceed():
     promise = answer(piled(0.7)).lead.promise
     share = 100 * (linear(samples=400)["x4"].values >= 0.7).mean()
-    text = f"{share:.1f} % of the rows share the largest value, 0.7 m"
-    assert promise.sentence == f"{text}, at which values may be cut off."
+    text = f"{share:.1f} % of the rows have the largest value, 0.7 m"
+    assert promise.sentence == f"{text}: values may be truncated there."
     assert promise.basis == ""
     traced = uq.trace(piled(0.7), "answer/quantities/depth/promise/share_at_largest")
     assert traced["value"] == pytest.approx(share / 100)
     assert [estimator["code"].rpartition(".")[2] for estimator in traced["estimators"]] == ["piles"]
     assert "do not exceed" not in repr(answer(piled(0.7)))
-    assert "at least 95 % stay below" in answer(piled(1.0)).lead.promise.sentence
+    assert "at least 95 % of values are below" in answer(piled(1.0)).lead.promise.sentence
 
 
 def test_inputs_that_may_have_no_effect_are_alternatives():
@@ -104,5 +104,5 @@ def test_assumed_laws_and_values_are_listed():
     }
     conclusions = answer(computed(study_of(tables)))
     assert conclusions.assumptions[0] == "1 of 2 laws is assumed: rate."
-    assert conclusions.assumptions[-1] == "No source says how well these laws are known: depth."
-    assert "What it assumes</summary><ul><li>1 of 2 laws" in fragment(conclusions)
+    assert conclusions.assumptions[-1] == "Laws without a source: depth."
+    assert "Assumptions</summary><ul><li>1 of 2 laws" in fragment(conclusions)

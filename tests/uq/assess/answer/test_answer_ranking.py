@@ -76,4 +76,6 @@ def test_what_decides_that_an_angle_is_too_large_is_that_of_its_magnitude():
     assert lead.ranking.index_meaning.endswith("of the angle with its sign")
     assert "raises its signed value" in lead.ranking.leader.effect
     (event,) = lead.events
-    assert event.decided_by.startswith("Decided most by x4: from 0 % where it is below 0.")
+    assert event.decided_by.startswith(
+        "Main driver: x4. Over x4, the share ranges from 0 % below 0."
+    )

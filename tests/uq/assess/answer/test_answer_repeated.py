@@ -49,7 +49,7 @@ def test_an_estimate_without_an_interval_says_nothing_of_other_seeds():
 def test_the_quantile_and_the_input_that_contributes_most_are_said():
     _, conclusions = lifetime()
     low, high = numbers(
-        r"With another seed, the 5 % quantile would lie between # and # days \(95 %\);"
+        r"In a repeat with another seed, the 5 % quantile would be # to # days \(95 %\);"
         r" rate would again contribute most\.",
         conclusions.lead.repeated.sentence,
     )
@@ -60,7 +60,7 @@ def test_the_quantile_and_the_input_that_contributes_most_are_said():
     ]
     assert [low, high] == pytest.approx(ends, rel=5e-3)
     sentence = conclusions.lead.repeated.sentence
-    assert f"The rows are enough: w{sentence[1:]}" in conclusions.lines
+    assert f"Sample size is sufficient: i{sentence[1:]}" in conclusions.lines
 
 
 def test_where_nothing_is_promised_the_share_is_said():
@@ -69,7 +69,7 @@ def test_where_nothing_is_promised_the_share_is_said():
     ds["locking"].attrs["success"] = "the motors have locked"
     lead = answer(asking(ds, outputs=["locking"], thresholds={"locking": 100.0})).lead
     low, high = numbers(
-        r"With another seed, # to # % would succeed before 100 s \(95 %\).*",
+        r"In a repeat with another seed, # to # % would succeed before 100 s \(95 %\).*",
         lead.repeated.sentence,
     )
     share = lead.first.share
@@ -93,13 +93,13 @@ def test_ends_that_look_alike_are_one_number_and_names_are_a_list():
     quantiles = Estimate(154.0, 153.9, 154.1), Estimate()
     promise = ToleranceBound(0.95, 0.95, np.nan, np.nan, unit, quantiles)
     assert repeated_quantile(promise, None, None).sentence == (
-        "With another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
+        "In a repeat with another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
     )
     index = Estimate(0.5, 0.4, 0.6)
     leader = Contribution(("a",), (index,), True)
     ranking = Ranking("y", "sobol", contributions=(leader,), rivals=("a_1", "b", "c"))
     sentence = repeated_quantile(None, None, ranking).sentence
-    assert sentence == "With another seed, a 1, b or c would contribute most."
+    assert sentence == "In a repeat with another seed, a 1, b or c would contribute most."
 
 
 def test_a_low_quantile_at_a_jump_stays_within_the_likely_range():
@@ -109,7 +109,7 @@ def test_a_low_quantile_at_a_jump_stays_within_the_likely_range():
     )
     lead = answer(asking(ds, outputs=["speed"])).lead
     low, high = numbers(
-        r"With another seed, the 5 % quantile would lie between # and # mm? \(95 %\).*",
+        r"In a repeat with another seed, the 5 % quantile would be # to # mm? \(95 %\).*",
         lead.repeated.sentence.replace("\N{NO-BREAK SPACE}", " "),
     )
     quantile = lead.promise.quantiles[0]
@@ -124,4 +124,4 @@ def test_a_low_quantile_at_a_jump_stays_within_the_likely_range():
 
 def test_quantiles_of_an_angle_are_said_to_be_of_magnitudes():
     ds = kinds(samples=400, analysis={"outputs": ["angle"], "thresholds": {"angle": 0.5}})
-    assert "of the magnitudes would lie" in answer(ds).lead.repeated.sentence
+    assert "of the magnitudes would be" in answer(ds).lead.repeated.sentence

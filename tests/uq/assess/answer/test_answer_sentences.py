@@ -43,7 +43,7 @@ def test_lives_of_which_some_never_end():
     ended = np.linspace(1, 10, 150)
     ds = days(np.r_[ended, np.full(50, np.inf)], quantiles=[0.05, 0.5])
     sentence = answer(ds).lead.range.sentence
-    pattern = r"5 % end within # days; median # days; # % \(# to # %\) never end\."
+    pattern = r"5 % of lives are below # days; median # days; # % \(# to # %\) never fail\."
     low, median, *never = numbers(pattern, sentence)
     exact = 100 * np.array(binomtest(50, 200).proportion_ci(method="wilson"))
     assert never == pytest.approx([25, *exact], abs=0.05)
@@ -52,7 +52,7 @@ def test_lives_of_which_some_never_end():
     assert median == pytest.approx(quantiles["0.5"]["value"] / DAY, rel=5e-3)
     assert 1 + 9 * 9 / 149 <= low <= 1 + 9 * 10 / 149  # between the tenth life and the next
     mostly = answer(days(np.r_[ended[:50], np.full(150, np.inf)])).lead
-    assert re.search(r"; 75\.0 % \(\S+ to \S+ %\) never end\.$", mostly.range.sentence)
+    assert re.search(r"; 75\.0 % \(\S+ to \S+ %\) never fail\.$", mostly.range.sentence)
     assert mostly.promise.sentence.startswith("With 95 % confidence, at least 95 % last longer")
 
 
@@ -65,7 +65,8 @@ def test_lives_of_which_some_exceed_the_horizon():
     assert np.isnan(event.share.value)
     assert (
         event.sentence
-        == "How many end within 20 days is not known: it is after the last observation."
+        == "The share that fail within 20 days cannot be estimated: it is after the last"
+        " observation."
     )
 
 
@@ -83,7 +84,9 @@ def test_a_success_succeeds():
     never = np.r_[times[:150], np.full(50, np.inf)]
     ds = ds.assign(locking=ds["locking"].copy(data=never))
     sentence = answer(asking(ds, outputs=["locking"])).lead.range.sentence
-    assert "5 % succeed within" in sentence and sentence.endswith("(19.5 to 31.4 %) never succeed.")
+    assert "5 % of times are below" in sentence and sentence.endswith(
+        "(19.5 to 31.4 %) never succeed."
+    )
 
 
 def test_where_nothing_can_be_promised_a_probability_comes_first():
@@ -96,8 +99,9 @@ def test_where_nothing_can_be_promised_a_probability_comes_first():
     assert conclusions.lead.promise.sentence == "" and conclusions.lead.first is event
     assert conclusions.lead.head[:2] == [event.sentence, event.decided_by] == conclusions.lines[:2]
     share, least, edge, most, same = numbers(
-        r"# % \(.*\) succeed within 20 s. Decided most by x4: from # % where it is above #"
-        r" to # % where it is below #\.",
+        r"# % \(.*\) succeed within 20 s. Main driver: x4. Over x4, the share ranges from # %"
+        r" above #"
+        r" to # % below #\.",
         " ".join(conclusions.lines[:2]),
     )
     there = np.isfinite(times[np.argsort(np.argsort(ds["x4"].values))])
@@ -128,7 +132,7 @@ def test_failed_rows_widen_a_probability():
     ds["y"][:10] = np.nan
     (event,) = answer(asking(ds, outputs=["y"], thresholds={"y": 5.0})).lead.events
     *_, low, high = numbers(
-        r"# % \(# to # %\) exceed 5; with failed rows # to # %\.", event.sentence
+        r"# % \(# to # %\) exceed 5; with failed rows at best and worst, # to # %\.", event.sentence
     )
     assert [low, high] == pytest.approx([100 * event.failed.low, 100 * event.failed.high], abs=0.05)
     assert event.failed.low <= event.share.low and event.share.high <= event.failed.high
@@ -146,7 +150,7 @@ def test_a_quantile_moves_where_no_probability_is_asked_for():
     conclusions = answer(computed(study_of(tables)))
     (remedy,) = (each for each in conclusions.advice if each.rule == "tighten")
     before, after, low, high = numbers(
-        r"Half the scatter of x4 \(sd 0.025 instead of 0.05\) would move the 5 % quantile"
+        r"Halving the scatter of x4 \(sd 0.025 instead of 0.05\) would change the 5 % quantile"
         r" from # to # \(# to #\)\.",
         remedy.sentence,
     )
@@ -167,7 +171,7 @@ def test_samples_of_several_rows_bound_nothing_and_say_why():
     assert lead.promise.basis.startswith(
         "No tolerance bound: the rows of one sample are not independent."
     )
-    assert np.isnan(lead.promise.lower) and "cautiously" in lead.promise.sentence
+    assert np.isnan(lead.promise.lower) and "conservative bound" in lead.promise.sentence
 
 
 def test_a_ranking_of_lives_says_that_it_integrates_nothing():
@@ -191,7 +195,9 @@ def test_no_single_input_explains_much():
     ranking = answer(ds).lead.ranking
     leads = ranking.leader is not None and ranking.leads
     assert not leads
-    assert ranking.sentence.startswith(("No single input", "Which inputs matter is not settled"))
+    assert ranking.sentence.startswith(
+        ("No single input", "The ranking of the inputs is not settled")
+    )
 
 
 def test_a_study_that_names_the_regime_first_is_about_the_regimes(capsys):
@@ -223,8 +229,8 @@ def test_the_rarer_regimes_say_what_decides_them():
     assert (first.predicate, second.predicate) == ("slow", "fast")
     assert [cause.predicate for cause in answer(ds).regime_causes] == ["fast"]
     *_, never, below, always, above = numbers(
-        r"# % \(# to # %\) fast\. Decided most by x1: from # % where it is below # m"
-        r" to # % where it is above # m\.",
+        r"# % \(# to # %\) fast\. Main driver: x1. Over x1, the share ranges from # % below # m"
+        r" to # % above # m\.",
         second.with_cause,
     )
     fast = ds["regime"].values == 1
@@ -237,7 +243,9 @@ def test_the_rarer_regimes_say_what_decides_them():
 def test_nothing_is_settled_without_intervals(method):
     findings = Findings(Result(linear(method, samples=512)))
     (sentence,) = verdict(findings)
-    assert sentence.startswith("Whether the rows are enough is not known: the rows of a")
+    assert sentence.startswith(
+        "Whether the sample size is sufficient cannot be assessed: the rows of a"
+    )
     assert sentence.endswith("set replicates = 8.")
     conclusions = answer(findings.result)
     rules = {advice.rule: advice.text for advice in conclusions.advice}
@@ -247,7 +255,9 @@ def test_nothing_is_settled_without_intervals(method):
         not contribution.effect for contribution in ranking.contributions
     )  # no direction is called unclear
     if method == "saltelli":
-        assert ranking.sentence.startswith("Which inputs matter is not settled: ST of x4 is 0.5")
+        assert ranking.sentence.startswith(
+            "The ranking of the inputs is not settled: ST of x4 is 0.5"
+        )
         assert ranking.sentence.endswith(", without an interval.")
 
 
@@ -255,4 +265,4 @@ def test_an_input_that_alone_has_an_effect_decides_without_an_interval():
     ds = linear("saltelli", samples=64, replicates=8)
     ds = asking(with_output(ds, "half", (ds["x4"].values > 0.5).astype(float)), outputs=["half"])
     (line,) = answer(ds).quantities
-    assert line.ranking.sentence == "x4 contributes most: 100 % of its variance."
+    assert line.ranking.sentence == "x4 contributes most: 100 % of the variance."

@@ -41,7 +41,7 @@ ALIKE = {"x2": 0.05, "x3": 0.062, "x4": 0.05}  # deviations of the terms: 0.1, 0
 def test_tolerances_that_help_about_as_much_are_named_together():
     advice = advised(sum_of(ALIKE))
     now, then, low, high = numbers(
-        r"Half the scatter of x4 \(sd 0.025 instead of 0.05\) would move the 5 % quantile"
+        r"Halving the scatter of x4 \(sd 0.025 instead of 0.05\) would change the 5 % quantile"
         r" from # to # \(# to #\)\.",
         advice.sentence,
     )
@@ -50,7 +50,8 @@ def test_tolerances_that_help_about_as_much_are_named_together():
     (then,) = numbers(r"x3 \(5 % quantile #\) would help about as much\.", advice.also)
     assert then == pytest.approx(quantile(ALIKE | {"x3": 0.031}), abs=0.03)
     sure, studied = numbers(
-        "The lower end of the interval of the 5 % quantile would then be #; as studied, #.",
+        "The lower end of the 95 % interval of the 5 % quantile would be #, up from # by the"
+        " same method.",
         advice.sure.promised,
     )
     assert studied < now < sure <= low

@@ -48,10 +48,10 @@ def test_an_input_with_few_values_is_ranked(conclusions):
 def test_the_probability_of_an_event_is_that_at_each_value(conclusions):
     (event,) = conclusions.lead.events
     assert event.decided_by == (
-        "Decided most by x2: from 0 % where it is below 0.25 to 100 % where it is above 0.25."
+        "Main driver: x2. Over x2, the share ranges from 0 % below 0.25 to 100 % above 0.25."
     )
     assert event.limited == (
-        "With 95 % confidence, fewer than 5 % exceed 3 m where x2 is at most 0.25."
+        "With 95 % confidence, fewer than 5 % exceed 3 m if x2 is at most 0.25."
     )
 
 
@@ -66,12 +66,13 @@ def test_a_bound_that_many_rows_have_is_not_said_to_be_exceeded():
     """A tenth ends at the third cycle itself."""
     cycles = valued(lambda x, *_: 3.0 + np.floor(8 * x), "lifetime", thresholds={"found": 5.0})
     lead = answer(cycles).lead
-    assert lead.promise.sentence == "With 95 % confidence, at least 95 % reach 3 s."
-    assert lead.events[0].predicate == "end before 5 s"  # those that end at 5 s are not among them
+    assert lead.promise.sentence == "With 95 % confidence, at least 95 % last at least 3 s."
+    assert lead.events[0].predicate == "fail before 5 s"  # those that end at 5 s are not among them
     gaps = valued(lambda x, *_: np.maximum(x - 0.97, 0) * -1.0)
     assert answer(gaps).lead.promise.sentence == (
-        "With 95 % confidence, at least 95 % do not fall below 0 m. 97.8 % of the rows share the"
-        " largest value, 0 m, at which values may be cut off."
+        "With 95 % confidence, at least 95 % of values are at least 0 m. 97.8 % of the rows have"
+        " the"
+        " largest value, 0 m: values may be truncated there."
     )
     assert valued_promise(lambda x, *_: 3.0 + x, "lifetime").startswith("last longer than")
 
@@ -86,9 +87,9 @@ def test_bounds_and_ranges_say_which_values_they_are_about():
     ds = valued(lambda x, *_: np.where(x < 0.2, np.nan, 1 + x))
     ds["found"].attrs["may_be_undefined"] = 1
     lead = answer(ds).lead
-    assert "at least 95 % of the defined values stay above" in lead.promise.sentence
+    assert "at least 95 % of defined values are above" in lead.promise.sentence
     assert re.match(
-        "90 % of the defined values lie between .* of the rows have none", lead.range.sentence
+        "90 % of defined values are between .* of the rows have no value", lead.range.sentence
     )
 
 
@@ -107,23 +108,26 @@ def test_no_less_is_promised_than_now():
     assert promise.would_be(Estimate(20.0, 13.95, 22.0), before) == ""
     # The bound that heads the answer, 13.9 h, is of another estimator, and keeps its own name.
     assert promise.would_be(Estimate(20.0, 14.2, 22.0), before) == (
-        "The lower end of the interval of the 5 % quantile would then be 14.2 h; as studied, 14 h."
+        "The lower end of the 95 % interval of the 5 % quantile would be 14.2 h, up from 14 h by"
+        " the same method."
     )
 
 
 def test_an_estimate_without_interval_is_not_promised():
     sentence = answer(linear(samples=20)).lead.promise.sentence
-    assert re.fullmatch(r"About 95 % stay above .*; about 95 % stay below .*\.", sentence)
+    assert re.fullmatch(
+        r"About 95 % of values are above .*; about 95 % of values are below .*\.", sentence
+    )
 
 
 def test_failed_rows_lie_beyond_what_could_then_be_promised():
     promise = ToleranceBound(0.95, 0.95, 13.9, np.nan, DisplayUnit("h"), is_life=True)
     before, after = Estimate(18.0, 14.5, 21.0), Estimate(20.0, 15.0, 22.0)
     tolerance = TighterTolerance(("x1",), "the 5 % quantile", before, after, promise=promise)
-    assert "would then be 15 h; as studied" in tolerance.promised
-    assert tolerance.promised.endswith(", 14.5 h.")
+    assert "would be 15 h, up from 14.5 h" in tolerance.promised
+    assert tolerance.promised.endswith(" from 14.5 h by the same method.")
     promise = replace(promise, failed=(Estimate(low=13.7, high=21.0), None))
     worst = replace(tolerance, promise=promise, failed=Estimate(low=14.2, high=22.0))
-    assert "would then be 14.2 h; as studied" in worst.promised
-    assert worst.promised.endswith(", 13.7 h.")
+    assert "would be 14.2 h, up from 13.7 h" in worst.promised
+    assert worst.promised.endswith(" from 13.7 h by the same method.")
     assert replace(worst, failed=Estimate(low=0.0, high=22.0)).promised == ""

@@ -20,7 +20,7 @@ def test_bounds_are_rounded_to_the_safe_side():
     assert rounded(-0.0012345, -np.inf) == "-0.00124"
     assert (rounded(5e-324), rounded(1.7976e308, np.inf)) == ("4.94e-324", "1.8e+308")
     bound = ToleranceBound(0.95, 0.95, np.nan, 1.1821, DisplayUnit("m"))
-    assert bound.sentence == "With 95 % confidence, at least 95 % stay below 1.19 m."
+    assert bound.sentence == "With 95 % confidence, at least 95 % of values are below 1.19 m."
 
 
 def test_numbers_of_rows_are_rounded_up():

@@ -17,7 +17,7 @@ def captions(ds):
 
 def test_captions_name_outputs_and_events_in_words():
     shown_captions = captions(linear(samples=400, analysis={"thresholds": {"y": 6.0}}))
-    event = "Probability that the value of the function is above 6, over the input that decides it"
+    event = "Probability that the value of the function is above 6, over its main driver"
     assert event in shown_captions
     assert "Value of the function, against the inputs with which it varies most" in shown_captions
     assert "Convergence: value of the function" in shown_captions
@@ -35,7 +35,7 @@ def test_the_size_of_an_angle_is_what_exceeds_a_threshold():
         for caption in shown_captions
         if caption.startswith("Probability that the magnitude of the ")
     )
-    assert event.endswith(", over the input that decides it")
+    assert event.endswith(", over its main driver")
 
 
 def test_outputs_of_one_meaning_have_pictures_that_do_not_share_identifiers():

@@ -164,7 +164,7 @@ def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer
     (panel,) = figure.axes
     title = f"Time until the depth is reached\nRows that {event.predicate}"
     assert panel.get_title("left") == title
-    assert event.decided_by.startswith("Decided most by rate")
+    assert event.decided_by.startswith("Main driver: rate")
     assert panel.get_xlabel().startswith("Rate ") and "pm" in panel.get_xlabel()
     drawn = panel.patches[-1].get_data().values
     assert np.allclose(drawn, [share.value for share in event.curve.shares])

@@ -266,7 +266,7 @@ def test_rows_less_exact_than_their_number_are_warned_of():
     ds = with_output(linear("latin-hypercube", 16, 4), "y_error", np.ones(64))
     section = convergence_of(Findings(Result(ds)), outcomes(Result(ds), summarise(Result(ds))))
     (warning,) = section["warnings"]
-    assert warning.startswith("y: the rows' own error (1 1)")
+    assert warning.startswith("y: numerical error (1 1) exceeds")
     assert sentence("no fewer samples") in section["refused"] and section["pictures"] == []
 
 

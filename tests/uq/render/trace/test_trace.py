@@ -177,9 +177,7 @@ def test_a_ranking_of_samples_with_several_rows_says_which_it_rests_on():
     )
     key = key_of("quantities", name, *_CONTRIBUTION, next(iter(first)), verb="answer")
     (note,) = api.trace(ds, key)["notes"]
-    assert (
-        note == f"the index rests on {ds.attrs['samples']} of these rows, the first of each sample"
-    )
+    assert note == f"the index uses {ds.attrs['samples']} of these rows, the first of each sample"
 
 
 _CONTRIBUTION = ("ranking", "contributions", "0", "inputs")

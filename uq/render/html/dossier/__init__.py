@@ -4,5 +4,5 @@ Reading order; each part imports only those above it:
 
     outline     headings of a dossier, the documents that they follow
     assessment  the assessed system: context, quantities, software, models, inputs
-    chapters    contents of each heading, and the dossier as HTML
+    chapters    chapters of a dossier
 """

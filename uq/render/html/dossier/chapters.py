@@ -110,7 +110,7 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
         "Estimate, standard uncertainty and coverage interval",
         tables=[of_jcgm] if of_jcgm.rows else [],
         notes=[
-            "What JCGM 101, 5.5 asks for: the intervals are probabilistically symmetric, from the 5"
+            "As JCGM 101, 5.5 requires: the intervals are probabilistically symmetric, from the 5"
             " % to the 95 % quantile, and cover variability and lack of knowledge together."
         ],
     )
@@ -126,7 +126,7 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     for name, shares in findings.summary.categories.items():
         yield Item(f"Statistics of {name}", tables=[category_table(name, shares)])
     if findings.summary.notes:
-        yield Item("What the rows cannot show", text=findings.summary.notes)
+        yield Item("Limits of the rows", text=findings.summary.notes)
     if findings.summary.regimes:
         of_regimes = [figure for figure in drawn if figure.output == REGIME]
         yield Item(
@@ -137,7 +137,7 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     yield Item("Estimators and their sources", tables=_estimators(findings))
     levels, fleets = levels_of(findings), fleet_table(findings)
     yield Item(
-        "What is shared, own, or due to chance",
+        "Variance components by level",
         tables=[table for table in (levels and levels["table"], fleets) if table],
         notes=levels["notes"] + fleet_notes(findings) if levels else ["Each sample has one row."],
     )
@@ -207,7 +207,7 @@ def _estimators(findings: Findings) -> list[HtmlTable]:
 def studies(findings: Findings, file: str) -> Iterator[Item]:
     """Yield the effects of alternative assumptions."""
     advised = [advice.text for advice in conclude(findings).advice if advice.tightened is not None]
-    yield Item("Less scatter of what matters most", text=advised)
+    yield Item("Less scatter of the leading input", text=advised)
     note = (
         "'uq what-if' shows the same rows under other laws, 'uq compare' two studies; neither is"
         " part of a result."

@@ -77,7 +77,7 @@ class Tolerances {
       return "These inputs depend on each other: the command weights the rows for both at once.";
     }
     if (weights && this.worth(weights) >= this.fewest) return "";
-    return "Too few rows carry all these changes at once for a count; the command says how many it takes.";
+    return "Too few rows support all these changes together; the command states how many are required.";
   }
 
   worth(weights) {
