@@ -30,10 +30,11 @@ class Example(NamedTuple):
 
 
 def _of_result(name: str, heading: str, title: str, says: str, call: str, study: str) -> Example:
-    """Return an example that draws a result, which ``uq plot`` draws with all its other figures."""
+    """Return an example that draws a result, which ``uq plot --only`` draws."""
     path = f"results/{study}.nc"
+    kind = name.removesuffix("-in-time")
     code = f'import uq\n\nds = uq.open_result("{path}")\nuq.plots.{call}'
-    return Example(name, heading, title, says, code, f"uq plot {path}", study)
+    return Example(name, heading, title, says, code, f"uq plot {path} --only {kind}", study)
 
 
 LIVES, INPUTS = "Lives and other outputs", "Inputs and regimes"
@@ -105,14 +106,6 @@ EXAMPLES = (
         " Points mark B1, B10 and B50, with their intervals, and a vertical line the time that the"
         " study asks about.",
         'lifetime(ds, "first_time_to_depth")',
-        "beam-lifetime",
-    ),
-    _of_result(
-        "quantiles",
-        LIVES,
-        "Quantiles with their intervals",
-        "A table for a journal: each quantile that the study names.",
-        'quantile_table(ds, "first_time_to_depth")',
         "beam-lifetime",
     ),
     _of_result(

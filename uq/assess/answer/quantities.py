@@ -87,7 +87,7 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
             element,
         )
         for element in findings.rows.elements(
-            _by_importance(result, asked)
+            by_importance(result, asked)
         )  # one at a time in memory
         if element.present.any() and only in (None, element.name)
     ]
@@ -97,7 +97,7 @@ def only_ranked(findings: Findings) -> list[Quantity]:
     """Return rankings alone, of rows that have indices but no statistics."""
     result = findings.result
     ranked = []
-    for element in result.elements(_by_importance(result, result.analysis)):
+    for element in result.elements(by_importance(result, result.analysis)):
         values = np.abs(element.values[np.isfinite(element.values)])
         if not len(values):
             continue
@@ -107,7 +107,7 @@ def only_ranked(findings: Findings) -> list[Quantity]:
     return ranked
 
 
-def _by_importance(result: Result, asked: AnalysisTable) -> list[str]:
+def by_importance(result: Result, asked: AnalysisTable) -> list[str]:
     """Return the outputs that a study asks for, its subject first."""
     declared = result.outputs
     return sorted(
@@ -245,6 +245,11 @@ def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | Non
     if ranking is None or not ranking.index_meaning or not any(facts):
         return ranking
     return replace(ranking, index_meaning=f"{ranking.index_meaning}, of lives as computed")
+
+
+def events_of(findings: Findings, element: Element) -> Iterator[Event]:
+    """Yield the events that the thresholds of a study define for an element."""
+    return _events(findings, findings.summary.outputs[element.name], element)
 
 
 def _events(findings: Findings, described: Described, element: Element) -> Iterator[Event]:

@@ -10,6 +10,7 @@ Reading order; each part imports only those above it:
     motion_plot         figures of a machine's motion
     response_plot       figures of a machine's response
     distribution_plots  figures of the distribution of an output
+    quantile_table      the table of quantiles of an output, and tables as files: CSV and LaTeX
     input_plot          the figure of the inputs: the stated law of each, and its sampled values
     scatter_plot        scatter plots
     catalogue           a figure of a result as an entry of a table

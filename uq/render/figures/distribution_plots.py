@@ -1,4 +1,4 @@
-"""Figures of the distribution of an output: histograms, a lifetime's, a table of quantiles."""
+"""Figures of the distribution of an output: histograms and a lifetime's."""
 
 from typing import Any
 
@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.assess.statistic import Statistic
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import Described, Summary, summarise
 from uq.assess.survival import survival
@@ -20,18 +19,14 @@ from uq.render.figures.elements_plot import (
     occurring_regimes,
     shares_in_bins,
 )
-from uq.render.figures.figure import INK, MARK, ROWS, WIDTH, Drawing, styled, thinned
-from uq.render.figures.panel import arrows, column, figure_of, finish, is_wide, logarithmic, roomy
-from uq.render.figures.words import as_label, label, literal, rows_in_words, typeset
+from uq.render.figures.figure import MARK, ROWS, styled, thinned
+from uq.render.figures.panel import arrows, column, finish, is_wide, logarithmic, roomy
+from uq.render.figures.words import as_label, label, literal, typeset
 from uq.result.elements import Element
 from uq.result.result import AnyResult, Result
-from uq.stats.estimate import rounded_text
-from uq.text.numbers import minus
 from uq.text.units import ReadableUnit
 
 _MOST_PANELS = 4
-_LINE = 0.16  # line height of the table [inch]
-_COLUMNS = (0.15, 0.49, 1.0)  # right ends of the columns
 _BOUND = "dotted: tolerance bound"
 _BANDS = (("", 0.35, "pointwise 95 % band"), ("band_", 0.15, "light: simultaneous band"))
 
@@ -250,73 +245,3 @@ def _mark(axes: Axes, described: Described | None, unit: ReadableUnit, colour: s
         axes.plot(ends, shares, "|", ms=5, mew=1.0, color=colour)
     arrows(axes, shares, low, high, "x", color=colour)
     return set(finite)
-
-
-@styled
-def quantile_table(
-    result: AnyResult, output: str, *, summary: Summary | None = None, axes: Axes | None = None
-) -> Figure:
-    """Draw a table of the quantiles of an output, with their 95 % intervals.
-
-    Parameters
-    ----------
-    result : Result, xarray.Dataset or path
-        A result.
-    output : str
-        An output other than a category.
-    summary : Summary, optional
-        What `uq.assess.summary.summarise` returns, if already computed.
-    axes : matplotlib.axes.Axes, optional
-        Where to draw; by default a new figure.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    result = Result.of(result)
-    chosen, part = drawn_elements(result.independent, output)
-    outputs = (summary or summarise(result)).outputs
-    by_element = [outputs[element.name].parts["quantiles"] for element in chosen]
-    values = [
-        statistic.estimate.finite.value for quantiles in by_element for statistic in quantiles
-    ]
-    unit = display_unit(chosen[0].units, np.array(values))
-    head = as_label(chosen[0].meaning, unit.name, 58).splitlines()
-    blocks = [
-        (label(result, element), [_quantile(statistic, unit.size) for statistic in quantiles])
-        for element, quantiles in zip(chosen, by_element, strict=True)
-    ]
-    lines = sum(len(quantiles) + bool(words) for words, quantiles in blocks)
-    height = len(head) + 2.8 + lines
-    if axes is None:
-        figure = Drawing(figsize=(WIDTH, _LINE * (height + 0.6)))
-        axes = figure.add_axes((0.02, 0.0, 0.96, 1.0))
-    axes.set_axis_off()
-    axes.set(xlim=(0, 1), ylim=(height + 0.3, -0.3))
-    axes.text(0, 0, "\n".join(head), va="top")
-    y: float = len(head) + 0.1
-    subtitle = ", ".join(filter(None, (rows_in_words(chosen), part)))
-    axes.text(0, y, subtitle, va="top", color="0.45", size=7)
-    columns = ("quantile", "value", "95 % interval")
-    for x, text in zip(_COLUMNS, columns, strict=True):
-        axes.text(x, y + 1.95, text, ha="right", size=7)
-    for line in (y + 1.05, y + 2.15, height + 0.15):
-        axes.axhline(line, color=INK, lw=0.6)
-    y += 2.95
-    for words, quantiles in blocks:
-        if words:
-            axes.text(0, y, words)
-            y += 1
-        for texts in quantiles:
-            for x, text in zip(_COLUMNS, texts, strict=True):
-                # "beyond the horizon" is wider than a column of numbers
-                wordy = any(letters.isalpha() and letters != "to" for letters in text.split())
-                axes.text(x, y, minus(text), ha="right", size=6.5 if wordy else None)
-            y += 1
-    return figure_of(axes)
-
-
-def _quantile(statistic: Statistic, per: float) -> tuple[str, str, str]:
-    value, ends = rounded_text(statistic.estimate, per)
-    value = value if np.isfinite(statistic.estimate.value) else statistic.words(per)
-    return f"{100 * float(statistic.key[-1]):g} %", value, ends

@@ -28,7 +28,7 @@ def profile(places, samples=40):
 
 def test_of_many_elements_a_figure_shows_some_and_says_so():
     ds = profile(50)
-    for draw in (plots.histogram, plots.convergence, plots.quantile_table):
+    for draw in (plots.histogram, plots.convergence):
         figure = draw(ds, "profile")
         lay_out(figure)
         assert "12 of 50 elements" in words(figure), draw
@@ -38,12 +38,10 @@ def test_of_many_elements_a_figure_shows_some_and_says_so():
     assert "elements" not in words(plots.histogram(profile(12), "profile"))
 
 
-def test_a_quantile_beyond_the_horizon_has_room():
+def test_a_quantile_beyond_the_horizon_is_stated():
     values, going = np.linspace(1.0, 4.0, 100), np.arange(100) >= 45
     ds = with_output(linear(samples=100), "life", values, "lifetime", censored=going)
-    figure = plots.quantile_table(ds, "life")
-    assert "beyond the horizon" in words(figure)
-    assert not collisions(figure)
+    assert "beyond the horizon" in plots.quantile_table(ds, "life").to_string()
 
 
 def test_inputs_over_decades_have_a_logarithmic_axis():

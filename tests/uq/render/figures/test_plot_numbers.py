@@ -79,9 +79,10 @@ def test_what_an_input_without_effect_has_is_a_line_across_the_bars():
 
 def test_a_table_has_one_unit():
     ds = lives(linear(samples=64))
-    text = words(plots.quantile_table(ds, "day_long"))
+    table = plots.quantile_table(ds, "day_long")
     value, low, high = median(ds)
-    assert "[days]" in text and f"50 % {value:.1f} {low:.1f} to {high:.1f}" in text
+    assert "[days]" in table.columns[1]
+    assert table.iloc[1].tolist() == ["50 %", f"{value:.1f}", f"{low:.1f} to {high:.1f}"]
 
 
 def test_points_and_bars_stand_in_the_unit_of_their_axis():
