@@ -19,9 +19,19 @@ from uq.render.figures.elements_plot import (
     mark_thresholds,
     occurring_regimes,
 )
-from uq.render.figures.figure import INK, PAGE, ROWS, SHADES, WIDTH, point_size, styled, thinned
+from uq.render.figures.figure import (
+    INK,
+    PAGE,
+    ROWS,
+    SHADES,
+    WIDTH,
+    point_size,
+    styled,
+    thinned,
+    width_or,
+)
 from uq.render.figures.panel import finish, grid, is_wide, logarithmic, roomy, title, whole_numbers
-from uq.render.figures.words import as_label, label, labelled, rows_in_words
+from uq.render.figures.words import as_label, input_label, label, rows_in_words
 from uq.result.elements import (
     Element,
     Floats,
@@ -39,6 +49,7 @@ _EMPTY = 0.05  # gap around a mean that breaks a line, relative to the panel's h
 _RARELY = 3  # in mean spacings: a gap that occurs by chance once in hundreds of cases
 _TORN = 8  # in mean spacings: a gap rare by chance within a median's interval
 _SHORTEST = 3  # minimum number of slices of a line
+_IN_A_ROW = 5.0  # width from which panels stand side by side [inch]
 _GAP = 0.1  # gap between rows that breaks a line, relative to the panel's width
 
 
@@ -69,9 +80,13 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
     element = rows.named_elements(output)[0]
     inputs = independent_inputs(rows)
     first = leading(inputs, element)[:_MOST_INPUTS]
-    alone = len(first) < 2
-    width = WIDTH if alone else PAGE
-    panels = grid(axes, 2.4, 1, len(first), width, sharey=True)[0]
+    wide_enough = len(first) > 1 and width_or(PAGE) > _IN_A_ROW
+    alone = not wide_enough
+    width = PAGE if wide_enough else WIDTH
+    if alone and len(first) > 1 and axes is None:
+        panels = grid(axes, 0.4 + 1.7 * len(first), len(first), 1, width, sharey=True)[:, 0]
+    else:
+        panels = grid(axes, 2.4, 1, len(first), width, sharey=True)[0]
     unit = display_unit(element.units, element.values)
     shown = replace(
         element,
@@ -263,7 +278,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
     if not regimes or len(inputs) < 2:
         raise InputError("pairs by regime need a model with regimes and two uncertain inputs")
     codes = rows.dataset["regime"].values
-    leading = _deciding(inputs, codes)[:_MOST_INPUTS]
+    leading = separating(inputs, codes)[:_MOST_INPUTS]
     units = {name: result.input_unit(name) for name in leading}
     side = len(leading) - 1
     alone = side == 1
@@ -289,11 +304,11 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
             roomy(panel, 6 if alone else 3)
             if i == side - 1:
                 panel.set_xlabel(
-                    labelled(rows.dataset[across], units[across].name, 38 if alone else 17)
+                    input_label(rows.dataset[across], units[across].name, 38 if alone else 17)
                 )
             if j == 0:
                 panel.set_ylabel(
-                    labelled(rows.dataset[down], units[down].name, 30 if alone else 20)
+                    input_label(rows.dataset[down], units[down].name, 30 if alone else 20)
                 )
     for name, (_, colour) in regimes.items():
         panels[0, 0].plot([], [], ".", ms=size, mew=0, color=colour, label=name)
@@ -301,7 +316,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
     return finish(panels[0, 0])
 
 
-def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
+def separating(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
     """Return the inputs ranked by how well they separate one regime from the others."""
     columns = np.column_stack(list(inputs.values()))
     far = np.zeros(len(inputs))
