@@ -23,7 +23,7 @@ from uq.render.figures.elements_plot import (
     occurring_regimes,
     shares_in_bins,
 )
-from uq.render.figures.figure import BAND, BARS, INK, LIMIT, MARK, styled, thinned
+from uq.render.figures.figure import BAND, BARS, LIMIT, MARK, styled, thinned
 from uq.render.figures.line_labels import (
     LineLabel,
     label_lines,
@@ -47,7 +47,7 @@ from uq.text.units import ReadableUnit
 
 _MOST_PANELS = 4
 _MOST_SHARES = 2
-_BANDS = (("band_", 0.18, "simultaneous band"), ("", 0.45, "pointwise 95 % band"))
+_BANDS = (("", 0.45, "pointwise 95 % band"), ("band_", 0.18, "simultaneous band"))
 
 
 @styled
@@ -215,7 +215,7 @@ def lifetime(
         for which, alpha, meaning in _BANDS:
             low, high = 1 - curve[f"{which}high"], 1 - curve[f"{which}low"]
             if np.isfinite(low).any():
-                band: Any = {"step": "post", "color": BAND, "alpha": alpha, "lw": 0, "zorder": 1}
+                band: Any = {"step": "post", "color": BAND, "alpha": alpha, "lw": 0.6, "zorder": 1}
                 panel.fill_between(time, low, high, label="_" * (i > 0) + meaning, **band)
         names += _mark_bounds(panel, result, element, outputs.get(element.name), unit, colour)
     success = chosen[0].declared.success
@@ -235,7 +235,7 @@ def lifetime(
         marked |= _mark(panel, outputs.get(element.name), unit, colour)
     if marked:
         b_lives = ", ".join(name for name in B_LIVES if name in marked)
-        panel.plot([], [], "o", ms=MARK, color=INK, label=b_lives)
+        next(line for line in panel.lines if line.get_marker() == "o").set_label(b_lives)
     if label_two_curves(panel, curves, texts, colours):
         for drawn in panel.lines:
             if drawn.get_label() in texts:

@@ -79,8 +79,8 @@ def index_bars(
     """
     result = Result.of(result)
     shown = indices or _only(result, output, method)
-    name, every = shown.name, shown.kinds().items()
-    kinds = {kind: values for kind, values in every if kind.unit != "p-value"}
+    name, of_kinds = shown.name, shown.kinds().items()
+    kinds = {kind: values for kind, values in of_kinds if kind.unit != "p-value"}
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     if not every:
@@ -132,8 +132,8 @@ def index_bars(
     axis = f"Sensitivity index{of_kind}" if shares else unit
     rest = ""
     if others:
-        least = max(abs(size(values[name])) for values in kinds.values() for name in others)
-        rest = f"\n{counted(len(others), 'other input')}: at most {max(least, 0.0):.2g}"
+        most = max(abs(size(values[name])) for values in kinds.values() for name in others)
+        rest = f"\n{counted(len(others), 'other input')}: at most {most:.2g}"
     panel.set_xlabel(axis + has_intervals * ",\nwith 95 % interval" + rest)
     if single and shares:
         panel.containers[0].set_label("_")
@@ -152,10 +152,16 @@ def _that_matter(
         largest = max((abs(size(index)) for index in values.values()), default=0.0)
         null = nulls[kind].largest if kind in nulls else nan
         limits[kind] = max(_NEGLIGIBLE * largest, null if isfinite(null) else 0.0)
+
+    def matters(kind: IndexKind, index: Estimate) -> bool:
+        if kind.unit == "output":  # an effect may be negative
+            return abs(size(index)) > limits[kind]
+        return size(index) > limits[kind] and not index.low <= 0
+
     matter = [
         name
         for name in parameters
-        if any(abs(size(values[name])) > limits[kind] for kind, values in kinds.items())
+        if any(matters(kind, values[name]) for kind, values in kinds.items())
     ]
     return (matter if len(matter) >= _FEWEST_BARS else parameters[-_FEWEST_BARS:])[-_MOST_BARS:]
 

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from uq.assess.answer.wording import called
 from uq.assess.row_inputs import independent_inputs
 from uq.errors import InputError
 from uq.indices.index import RefusedError
@@ -112,11 +113,16 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
         if not np.isfinite(shown.values).any():
             panel.set_yticks([])
         mark_thresholds(panel, result, element, unit, vertical=True)
+        if alone and len(first) > 1:
+            panel.set_ylabel(as_label(called(element.output), unit.name, 20))
     above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(result, element)]
     statistic = "median" if medians else "mean"
     of_each = f"lines: {statistic} in slices of a regime's rows" if len(parts) > 1 else ""
     remarks = [rows_in_words([element]), of_each]
-    if not alone:
+    if alone and len(first) > 1:
+        subtitle = ", ".join(filter(None, (label(result, element), rows_in_words([element]))))
+        above, remarks = [subtitle], [of_each]
+    elif not alone:
         above, remarks = [", ".join(filter(None, above))], ["; ".join(filter(None, remarks))]
     title(panels[0], *above, *remarks)
     return finish(panels[0])
@@ -278,7 +284,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
     if not regimes or len(inputs) < 2:
         raise InputError("pairs by regime need a model with regimes and two uncertain inputs")
     codes = rows.dataset["regime"].values
-    leading = separating(inputs, codes)[:_MOST_INPUTS]
+    leading = _deciding(inputs, codes)[:_MOST_INPUTS]
     units = {name: result.input_unit(name) for name in leading}
     side = len(leading) - 1
     alone = side == 1
@@ -316,7 +322,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
     return finish(panels[0, 0])
 
 
-def separating(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
+def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
     """Return the inputs ranked by how well they separate one regime from the others."""
     columns = np.column_stack(list(inputs.values()))
     far = np.zeros(len(inputs))

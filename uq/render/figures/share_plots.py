@@ -22,12 +22,12 @@ from uq.render.figures.panel import (
     roomy,
     title,
 )
-from uq.render.figures.scatter_plot import separating
 from uq.render.figures.words import as_label, input_label, literal, symbol_of
 from uq.result.result import AnyResult, Result
 from uq.text.numbers import counted, percent
 
 _MOST_SLICES, _ROWS_OF_SLICE = 12, 20
+_ROOM = 1.2  # height of an axis of shares relative to the largest
 _SIDE_BY_SIDE = 5.0  # width from which panels stand side by side [inch]
 
 
@@ -123,18 +123,32 @@ def regime_shares(result: AnyResult, *, axes: Axes | None = None) -> Figure:
     count = min(_MOST_SLICES, int(has_regime.sum()) // _ROWS_OF_SLICE)
     if count < 2:
         raise InputError(f"shares of regimes need at least {2 * _ROWS_OF_SLICE} rows")
-    names = separating(inputs, codes)[:2]
+    slices_of = {
+        name: np.array_split(np.argsort(x[has_regime], kind="stable"), count)
+        for name, x in inputs.items()
+    }
+    shares_of = {
+        name: {
+            words: np.array([np.mean(codes[has_regime][part] == code) for part in slices])
+            for words, (code, _) in regimes.items()
+        }
+        for name, slices in slices_of.items()
+    }
+
+    def spread(name: str) -> float:
+        return float(sum(np.var(share) for share in shares_of[name].values()))
+
+    names = sorted(inputs, key=spread, reverse=True)[:2]
     side_by_side = width_or(WIDTH) > _SIDE_BY_SIDE
     shape = (1, len(names)) if side_by_side else (len(names), 1)
     panels = grid(axes, 0.4 + 1.55 * shape[0], *shape).ravel()
     for panel, name in zip(panels, names, strict=True):
         x = inputs[name][has_regime] / result.input_unit(name).size
-        slices = np.array_split(np.argsort(x, kind="stable"), count)
+        slices = slices_of[name]
         edges = [x[rows_of_slice[0]] for rows_of_slice in slices] + [x[slices[-1][-1]]]
         base = np.zeros(count)
-        for words, (code, colour) in regimes.items():
-            share = [np.mean(codes[has_regime][slice_rows] == code) for slice_rows in slices]
-            top = base + np.array(share)
+        for words, (_, colour) in regimes.items():
+            top = base + shares_of[name][words]
             panel.stairs(top, edges, baseline=base, fill=True, color=colour, label=words)
             base = top
         wide = is_wide(x)
@@ -197,7 +211,8 @@ def event_probability(
         lw=0.9,
         label=f"all rows: {percent(event.share.value)}",
     )
-    panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
+    top = min(1.02, _ROOM * max(np.nanmax(high), event.share.value))
+    panel.set(ylim=(-0.02 * top, top), ylabel="Share of rows")
     title(panel, *(as_label(line, width=46) for line in (output_of(result, event.name), clause)))
     over = called(event.over)  # consistent with the sentence beside the figure
     panel.set_xlabel(

@@ -62,6 +62,8 @@ def leading_categories(findings: Findings, names: Sequence[str]) -> Iterator[Fig
     """Yield each category that the study names, and the regime."""
     shown = {*findings.result.analysis.outputs, REGIME}
     for category in categories(findings):
+        if category.output == REGIME and in_one_regime(findings, REGIME):
+            continue
         if category.output in (shown if tuple(names) == leading_outputs(findings) else names):
             yield category
 
