@@ -22,9 +22,7 @@ def main(chosen: list[str]) -> None:
             uq.run(f"studies/{one.study}.toml")
         figure = drawn(one)
         assert isinstance(figure, Figure)
-        for path in write(figure, FOLDER / one.name):
-            if path.suffix != ".svg":
-                path.unlink()
+        write(figure, FOLDER / one.name, ("svg",))
         print(one.name, flush=True)
 
 

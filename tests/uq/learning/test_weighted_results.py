@@ -116,7 +116,7 @@ def test_before_and_after_are_compared_with_cautious_intervals(posterior):
 
 
 def test_figures_and_report_show_weighted_rows(posterior, tmp_path):
-    names = {path.stem for path in plots.save_all(Result(posterior), tmp_path)}
+    names = {path.stem for path in plots.save_all(Result(posterior), tmp_path, every=True)}
     assert {"lifetime-life", "quantiles-life", "inputs"} <= names
     assert not any(name.startswith(("scatter", "sobol", "convergence")) for name in names)
     text = page(Result(posterior), "posterior.nc")

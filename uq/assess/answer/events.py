@@ -191,8 +191,11 @@ def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
         yield {"above": low, "below": high} | estimate_json.numbers(share)
 
 
-def events_of(findings: Findings, described: Described, element: Element) -> Iterator[Event]:
-    """Yield the events at the thresholds of an element."""
+def events_of(
+    findings: Findings, element: Element, described: Described | None = None
+) -> Iterator[Event]:
+    """Yield the events at the thresholds of an element, by default from its summary."""
+    described = described or findings.summary.outputs[element.name]
     side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
     for statistic in described.parts["thresholds"]:
         if statistic.key[-1] != side or statistic.at is None:

@@ -232,7 +232,7 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
             element,
         )
         for element in findings.rows.elements(
-            _by_importance(result, asked)
+            by_importance(result, asked)
         )  # one at a time in memory
         if element.present.any() and only in (None, element.name)
     ]
@@ -242,7 +242,7 @@ def only_ranked(findings: Findings) -> list[Quantity]:
     """Return rankings alone, of rows that have indices but no statistics."""
     result = findings.result
     ranked = []
-    for element in result.elements(_by_importance(result, result.analysis)):
+    for element in result.elements(by_importance(result, result.analysis)):
         values = np.abs(element.values[np.isfinite(element.values)])
         if not len(values):
             continue
@@ -254,7 +254,7 @@ def only_ranked(findings: Findings) -> list[Quantity]:
     return ranked
 
 
-def _by_importance(result: Result, asked: AnalysisTable) -> list[str]:
+def by_importance(result: Result, asked: AnalysisTable) -> list[str]:
     """Return the outputs that a study asks for, its subject first."""
     declared = result.outputs
     return sorted(
@@ -330,7 +330,7 @@ def _quantity(
             is_life=element.is_lifetime,
             by=by,
         ),
-        tuple(events_of(findings, described, element)),
+        tuple(events_of(findings, element, described)),
         _as_computed(ranking_of_element(findings, element, unit), described),
         wanted,
         earliest(findings, element, unit, context.replicate)

@@ -257,14 +257,46 @@ def plot(
     result: given.ResultFile,
     folder: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Default: OUT.nc without its ending."),
+        typer.Option(
+            "-o", "--folder", metavar="FOLDER", help="Default: OUT.nc without its ending."
+        ),
     ] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option("--only", metavar="NAME", help="A kind of figure, or the name of a file."),
+    ] = None,
+    outputs: Annotated[
+        list[str] | None,
+        typer.Option("--output", metavar="OUTPUT", help="Figures of this output."),
+    ] = None,
+    every: Annotated[bool, typer.Option("--all", help="Every figure, of every output.")] = False,
+    formats: Annotated[
+        list[str] | None, typer.Option("--format", metavar="png|svg|pdf", help="Default: png.")
+    ] = None,
+    width: Annotated[
+        str | None,
+        typer.Option(metavar="LENGTH", help="Of each figure, as 84mm; default: 84 or 174 mm."),
+    ] = None,
+    titles: Annotated[
+        bool, typer.Option("--title/--no-title", help="With titles, or without for a caption.")
+    ] = True,
 ) -> None:
-    """Draw the figures of a result into a folder."""
+    """Draw the figures of a result into a folder: by default those about its subject."""
     from uq.plots import save_all
+    from uq.render.figures.figure import width_in_metres
     from uq.result.result import Result
 
-    for path in save_all(Result.open(result), folder or result.with_suffix("")):
+    paths = save_all(
+        Result.open(result),
+        folder or result.with_suffix(""),
+        only=only or (),
+        outputs=outputs or (),
+        every=every,
+        formats=tuple(dict.fromkeys(",".join(formats or ["png"]).replace("|", ",").split(","))),
+        width=None if width is None else width_in_metres(width),
+        titles=titles,
+    )
+    for path in paths:
         print(path)
 
 

@@ -6,10 +6,12 @@ Reading order; each part imports only those above it:
     panel               panels of a new figure or within given axes
     words               words, units and symbols in figures and reports
     elements_plot       common parts of figures of elements
+    line_labels         labels beside the lines that they name, and the note on an assumed scale
     index_plot          figures of sensitivity indices
     motion_plot         figures of a machine's motion
     response_plot       figures of a machine's response
     distribution_plots  figures of the distribution of an output
+    quantile_table      the table of quantiles of an output, and tables as files: CSV and LaTeX
     input_plot          the figure of the inputs: the stated law of each, and its sampled values
     scatter_plot        scatter plots
     catalogue           a figure of a result as an entry of a table

@@ -1,16 +1,23 @@
 """A figure of a result as an entry of a table: its subjects, its caption, where it appears."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from matplotlib.figure import Figure
 
 from uq.assess.findings import Findings
+from uq.assess.targets import split_name
+from uq.errors import InputError, choices, nearest
 from uq.render.figures.index_plot import subject
-from uq.text.numbers import capitalized
+from uq.render.figures.words import place_in_words
+from uq.result.result import Result
+from uq.text.numbers import capitalized, threshold
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -33,6 +40,11 @@ class FigureSubject:
     method: str = ""
     keywords: Mapping[str, Any] = field(default_factory=dict)
     part: str = ""
+
+    @property
+    def output(self) -> str:
+        """The output, "" for the complete result."""
+        return re.split(r"[\[=]", split_name(self.name)[1])[0]
 
 
 Applies = Callable[[Findings, str], bool]
@@ -62,9 +74,14 @@ class Entry:
         Attributes of `Findings` passed as keyword arguments.
     file : tuple of str
         Parts of the file name.
+    leading : callable or None
+        (Findings, leading outputs) -> the subjects drawn without a request; by default those of
+        `subjects` that are about these outputs.
+    on_request : bool
+        Whether it is drawn on request only.
     """
 
-    draw: Callable[..., Figure]
+    draw: "Callable[..., Figure | pd.DataFrame]"
     subjects: Callable[[Findings], Iterator[FigureSubject]]
     caption: str = "{what}"
     section: Literal["inputs", "rows", "results", "convergence", ""] = "results"
@@ -72,6 +89,8 @@ class Entry:
     in_report: tuple[Applies, ...] = ()
     needs: tuple[str, ...] = ()
     file: tuple[str, ...] = ("figure", "method", "name")
+    leading: Callable[[Findings, Sequence[str]], Iterator[FigureSubject]] | None = None
+    on_request: bool = False
 
 
 @dataclass(frozen=True)
@@ -86,7 +105,8 @@ class Drawable:
     @property
     def file(self) -> str:
         """File name without a suffix."""
-        words = {"figure": self.figure, "method": self.subject.method, "name": self.subject.name}
+        name = target_in_file_name(self.findings.result, self.subject.name)
+        words = {"figure": self.figure, "method": self.subject.method, "name": name}
         named = (words[word] for word in self.entry.file)
         return file_name(*filter(None, (*named, self.subject.part)))
 
@@ -105,8 +125,8 @@ class Drawable:
         caption = self.entry.caption.format(what=words, event=event, method=self.subject.method)
         return capitalized(caption) + f" ({self.subject.part})" * bool(self.subject.part)
 
-    def draw(self) -> Figure:
-        """Draw and return the figure."""
+    def draw(self) -> "Figure | pd.DataFrame":
+        """Return the figure, or the table."""
         needs = {need: getattr(self.findings, need) for need in self.entry.needs}
         names = filter(None, [self.subject.name])
         return self.entry.draw(
@@ -132,6 +152,81 @@ def drawables(
                     yield Drawable(figure, entry, figure_subject, findings)
 
 
+def leading_drawables(
+    figures: Mapping[str, Entry], findings: Findings, outputs: Sequence[str]
+) -> Iterator[Drawable]:
+    """Yield the figures about the subject of a study.
+
+    Parameters
+    ----------
+    figures : mapping
+    findings : Findings
+    outputs : sequence of str
+        The leading outputs, the most important first.
+    """
+    for figure, entry in figures.items():
+        if entry.on_request:
+            continue
+        subjects = (
+            entry.leading(findings, outputs)
+            if entry.leading
+            else (each for each in entry.subjects(findings) if each.output in outputs)
+        )
+        for figure_subject in subjects:
+            if all(applies(findings, figure_subject.name) for applies in entry.applies):
+                yield Drawable(figure, entry, figure_subject, findings)
+
+
+def named_drawables(
+    figures: Mapping[str, Entry], findings: Findings, names: Sequence[str]
+) -> list[Drawable]:
+    """Return the figures of some kinds, or with some file names.
+
+    Raises
+    ------
+    InputError
+        When there is no figure of that name.
+    """
+    kinds = {name: figures[name] for name in names if name in figures}
+    drawn = list(drawables(kinds, findings))
+    if absent := sorted(set(kinds) - {drawable.figure for drawable in drawn}):
+        raise InputError(f"this result has no figure '{absent[0]}'")
+    files = [name for name in names if name not in figures]
+    if files:
+        every = {drawable.file: drawable for drawable in drawables(figures, findings)}
+        for name in files:
+            if name not in every:
+                near = nearest(name, [*figures, *every])
+                raise InputError(f"no figure '{name}' (kinds: {choices(figures, 20)}){near}")
+        drawn += [every[name] for name in files if every[name].figure not in kinds]
+    return drawn
+
+
+def target_in_file_name(result: Result, target: str) -> str:
+    """Return a target in words for a file name: ``life-250um-below-24_hours``.
+
+    Parameters
+    ----------
+    result : Result
+    target : str
+        An output, or a target of indices.
+    """
+    form, inside, at = split_name(target)
+    output = re.split(r"[\[=]", inside)[0]
+    if output not in result.outputs or result.is_category(output):
+        return target
+    elements = result.named_elements(inside)
+    place = place_in_words(result, elements[0]) if "[" in inside and len(elements) == 1 else ""
+    side = ""
+    if at:
+        size = threshold(float(at), elements[0].units)
+        side = f"{'below' if '<' in target else 'above'}-{size}"
+    return "-".join(filter(None, (form * (form != "P"), output, place.replace(" ", ""), side)))
+
+
+_ASCII = str.maketrans({"µ": "u", "\N{GREEK SMALL LETTER MU}": "u", "°": "deg", "Ω": "ohm"})
+
+
 def file_name(*words: str) -> str:
     """Join words to a file name without characters special to a shell."""
-    return re.sub(r"[^A-Za-z0-9.+-]+", "_", "-".join(words)).strip("_")
+    return re.sub(r"[^A-Za-z0-9.+-]+", "_", "-".join(words).translate(_ASCII)).strip("_")

@@ -1,8 +1,9 @@
 """Figures: their style, their layout and their files."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -11,18 +12,57 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_pdf import FigureCanvasPdf
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 
+from uq.errors import InputError
 from uq.files.interrupts import undone
 from uq.files.whole_files import file_behind
+from uq.text.quantities import misfit, read_quantity
 
 WIDTH = 84 / 25.4
 """Width of one column of a journal [inch]."""
 PAGE = 174 / 25.4
 """Width of both columns [inch]."""
+
+_asked_width: ContextVar[float | None] = ContextVar("width", default=None)
+
+
+@contextmanager
+def drawn_at(width: float | None) -> Iterator[None]:
+    """Draw new figures at a width [inch]; None leaves each figure its own."""
+    token = _asked_width.set(width)
+    try:
+        yield
+    finally:
+        _asked_width.reset(token)
+
+
+def width_or(usual: float) -> float:
+    """Return the width of a new figure [inch]: the one asked for, or the usual one."""
+    return _asked_width.get() or usual
+
+
+_NARROWEST, _WIDEST = 0.05, 0.5  # [m]
+
+
+def width_in_metres(text: str) -> float:
+    """Return the width of a figure [m] from a length with its unit: ``84mm``.
+
+    Raises
+    ------
+    InputError
+        When it is no length, or no width at which a figure can be read.
+    """
+    try:
+        width = float(read_quantity(text))
+        unlike = misfit(text, "width", "m")
+    except ValueError as error:
+        raise InputError(f"--width '{text}': {error}") from None
+    if unlike or not _NARROWEST <= width <= _WIDEST:
+        raise InputError(f"--width '{text}': must be a length from 50 to 500 mm, such as 84mm")
+    return width
+
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
@@ -36,8 +76,10 @@ LIMIT = "#C2185B"
 """Colour of limits: thresholds of a study, stops of a machine."""
 SHADES = (INK, "#9A9A9A", "#707070", "#BBBBBB")
 """Shades of the elements of an output, combined with `LINES`."""
-BARS = ("#6B7580", "#B4BBC2", "#8E979F", "#D0D5DA")
-"""Shades of the kinds of indices."""
+BARS = ("#4A7BA6", "#A9C3DA", "#7F8C99", "#CFD6DC")
+"""Colours of the kinds of indices, and of histograms."""
+BAND = "#2F7FBF"
+"""Colour of the confidence bands of a single curve."""
 LINES = ("-", "--", "-.", ":")
 
 _STYLE: Any = {
@@ -143,15 +185,21 @@ def _fonts_without_layout() -> Iterator[None]:
         Options._drop_tables_default = before
 
 
+FORMATS = ("png", "svg", "pdf")
+"""File formats of figures."""
+
+
 @styled
-def write(figure: Figure, path: Path) -> list[Path]:
-    """Write a figure as PNG, SVG and PDF, with reproducible bytes, and return their paths.
+def write(figure: Figure, path: Path, formats: Sequence[str] = FORMATS) -> list[Path]:
+    """Write a figure in some formats, with reproducible bytes, and return the paths.
 
     Parameters
     ----------
     figure : Figure
     path : Path
         Path without a suffix.
+    formats : sequence of str
+        Of `FORMATS`.
 
     Returns
     -------
@@ -162,18 +210,35 @@ def write(figure: Figure, path: Path) -> list[Path]:
     InputError
         When one of these paths exists and is not a file.
     """
-    png, svg, pdf = files = [path.with_name(f"{path.name}.{end}") for end in ("png", "svg", "pdf")]
+    files = [path.with_name(f"{path.name}.{end}") for end in formats]
     for file in files:
         file_behind(file)
     lay_out(figure)
-    with replaced(png) as part:
-        FigureCanvasAgg(figure).print_png(part, metadata={"Software": None})
-    with replaced(svg) as part:
-        FigureCanvasSVG(figure).print_svg(part, metadata={"Date": None, "Creator": None})
-    no_metadata = dict.fromkeys(("CreationDate", "Creator", "Producer"))
-    with _fonts_without_layout(), replaced(pdf) as part:
-        FigureCanvasPdf(figure).print_pdf(part, metadata=no_metadata)
+    for file, form in zip(files, formats, strict=True):
+        with replaced(file) as part:
+            _WRITE[form](figure, part)
     return files
+
+
+def _write_png(figure: Figure, path: Path) -> None:
+    FigureCanvasAgg(figure).print_png(path, metadata={"Software": None})
+
+
+def _write_svg(figure: Figure, path: Path) -> None:
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None, "Creator": None})
+
+
+def _write_pdf(figure: Figure, path: Path) -> None:
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+    no_metadata = dict.fromkeys(("CreationDate", "Creator", "Producer"))
+    with _fonts_without_layout():
+        FigureCanvasPdf(figure).print_pdf(path, metadata=no_metadata)
+
+
+_WRITE = {"png": _write_png, "svg": _write_svg, "pdf": _write_pdf}
 
 
 @contextmanager

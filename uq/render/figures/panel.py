@@ -15,7 +15,7 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from uq.errors import InputError
-from uq.render.figures.figure import WIDTH, Drawing
+from uq.render.figures.figure import WIDTH, Drawing, width_or
 from uq.result.elements import Floats
 from uq.text.numbers import minus
 
@@ -47,7 +47,7 @@ def grid(
         Height of a new figure, without the legend that `finish` draws [inch].
     rows, columns : int
     width : float
-        Width of a new figure [inch].
+        Usual width of a new figure [inch].
     **shared
         The axes that panels share, as in `matplotlib.figure.Figure.subplots`.
 
@@ -61,7 +61,7 @@ def grid(
         When several panels are asked for and the axes are not part of a grid.
     """
     if axes is None:
-        figure = Drawing(figsize=(width, height), layout="constrained")
+        figure = Drawing(figsize=(width_or(width), height), layout="constrained")
         return figure.subplots(rows, columns, squeeze=False, **shared)
     if rows == columns == 1:
         return np.array([[axes]])
@@ -177,7 +177,8 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
     figure = figure_of(axes)
     if isinstance(figure, Drawing):
         short = max(map(len, labels), default=0) <= _HALF
-        across = 2 if short or figure.get_figwidth() > WIDTH else 1
+        is_wide_figure = figure.get_figwidth() > 1.5 * WIDTH
+        across = (1 + short) * (1 + is_wide_figure)
         lines = ceil(len(labels) / across) if entries is None else entries
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
@@ -207,6 +208,14 @@ def heading(axes: Axes, text: str) -> None:
         figure.suptitle(text, x=0.01, ha="left", fontsize=8)
     else:
         axes.set_title(f"{text}\n{axes.get_title(loc='left')}".strip(), loc="left")
+
+
+def untitled(figure: Figure) -> None:
+    """Remove the titles of a figure, which a journal puts into its caption."""
+    for axes in figure.axes:
+        axes.set_title("", loc="left")
+    if isinstance(figure, Drawing):
+        figure.suptitle("")
 
 
 def title(axes: Axes, *lines: str) -> None:

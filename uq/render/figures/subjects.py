@@ -1,14 +1,19 @@
 """The subjects of figures, and the conditions under which a figure applies to them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from uq.assess.answer.answer import conclude
+from uq.assess.answer.compared_indices import method_for
+from uq.assess.answer.events import events_of
+from uq.assess.answer.quantities import by_importance
 from uq.assess.findings import Findings
 from uq.assess.row_inputs import independent_inputs
 from uq.assess.sampled_laws import laws_and_values
 from uq.assess.sensitivities import TargetIndices, methods
-from uq.assess.targets import split_name
+from uq.assess.summary import REGIME
+from uq.assess.targets import lightened, number_of, split_name
 from uq.errors import InputError
+from uq.indices.methods import METHODS
 from uq.render.figures.catalogue import FigureSubject
 from uq.render.figures.convergence_plot import followed, total_indices
 from uq.render.figures.elements_plot import occurring_regimes
@@ -16,6 +21,8 @@ from uq.render.figures.index_plot import dimension_of
 from uq.text.element_names import is_whole
 
 _MOST_INPUTS = 6
+_MOST_OUTPUTS = 2
+_FEWEST_ROWS = 80
 
 
 def the_result(findings: Findings) -> Iterator[FigureSubject]:
@@ -29,6 +36,61 @@ def outputs(findings: Findings) -> Iterator[FigureSubject]:
         declared, result = findings.result.outputs, findings.result
         shown = result.shown_outputs(result.analysis)
         yield from (FigureSubject(output) for output in shown if not declared[output].is_category)
+
+
+def leading_outputs(findings: Findings) -> tuple[str, ...]:
+    """Return the outputs that the study is about, its subject first."""
+    declared = findings.result.outputs
+    ordered = by_importance(findings.result, findings.result.analysis)
+    return tuple(
+        name for name in ordered if not declared[name].is_category and name not in findings.absent
+    )[:_MOST_OUTPUTS]
+
+
+def the_first(findings: Findings, names: Sequence[str]) -> Iterator[FigureSubject]:
+    """Yield the first of the leading outputs."""
+    if len(findings.rows):
+        yield from map(FigureSubject, names[:1])
+
+
+def the_result_alone(findings: Findings, names: Sequence[str]) -> Iterator[FigureSubject]:
+    """Yield the result itself, unless outputs are asked for by name."""
+    if tuple(names) == leading_outputs(findings):
+        yield FigureSubject()
+
+
+def leading_categories(findings: Findings, names: Sequence[str]) -> Iterator[FigureSubject]:
+    """Yield each category that the study names, and the regime."""
+    shown = {*findings.result.analysis.outputs, REGIME}
+    for category in categories(findings):
+        if category.output == REGIME and in_one_regime(findings, REGIME):
+            continue
+        if category.output in (shown if tuple(names) == leading_outputs(findings) else names):
+            yield category
+
+
+def indices_of_the_first(findings: Findings, names: Sequence[str]) -> Iterator[FigureSubject]:
+    """Yield the target that ranks the inputs of the first of the leading outputs."""
+    for output in names[:1]:
+        method = method_for(findings.result, event=False)
+        if method is None:
+            continue
+        target = number_of(findings.result.named_elements(output)[0])
+        name = (target if METHODS[method].scale_free else lightened(target)).name
+        try:
+            target_indices = findings.indices(method, name)
+        except InputError:
+            continue
+        if not target_indices.refused and target_indices.kinds():
+            yield FigureSubject(name, method, {"method": method, "indices": target_indices})
+
+
+def events_of_the_first(findings: Findings, names: Sequence[str]) -> Iterator[FigureSubject]:
+    """Yield the events of the first of the leading outputs with an identified main driver."""
+    for output in names[:1]:
+        for event in events_of(findings, findings.rows.named_elements(output)[0]):
+            if event.curve is not None:
+                yield FigureSubject(event.name, keywords={"event": event})
 
 
 def inputs(findings: Findings) -> Iterator[FigureSubject]:
@@ -120,6 +182,11 @@ def in_one_regime(findings: Findings, name: str) -> bool:
 def has_plain_rows(findings: Findings, name: str) -> bool:
     """Return whether all rows have equal weight."""
     return not findings.result.has_weights
+
+
+def has_enough_rows(findings: Findings, name: str) -> bool:
+    """Return whether an input varies, and there are enough rows for slices of it."""
+    return bool(independent_inputs(findings.rows)) and len(findings.rows) >= _FEWEST_ROWS
 
 
 def has_several_inputs(findings: Findings, name: str) -> bool:

@@ -8,6 +8,7 @@ import pytest
 from asked_indices import sensitivities
 from computed import kinds, linear
 from IPython.core.formatters import DisplayFormatter
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
@@ -15,6 +16,7 @@ from uq import plots
 from uq.assess.findings import Findings
 from uq.errors import InputError
 from uq.render.figures.catalogue import drawables
+from uq.render.figures.figure import width_in_metres
 from uq.result.result import Result
 
 
@@ -23,12 +25,20 @@ def files(ds):
     return {picture.file for picture in drawables(plots.FIGURES, Findings(Result(ds)))}
 
 
+FORMATS = ("png", "svg", "pdf")
+
+
+def all_files(ds, folder, **options):
+    """Write all figures of a result, and return their paths."""
+    return plots.save_all(Result(ds), folder, every=True, formats=FORMATS, **options)
+
+
 @pytest.mark.slow
 def test_every_figure_of_a_study_is_written_as_png_svg_and_pdf(tmp_path):
     asked = {"outputs": ["life", "angle", "regime"], "thresholds": {"life": 1.0}}
     ds = kinds(samples=96, analysis=asked | {"sensitivity": ["pawn"]})
-    paths = plots.save_all(Result(ds), tmp_path / "new" / "figures")
-    assert {path.suffix for path in paths} == {".png", ".svg", ".pdf"}
+    paths = all_files(ds, tmp_path / "new" / "figures")
+    assert {path.suffix for path in paths} == {".png", ".svg", ".pdf", ".csv", ".tex"}
     stems = {path.stem for path in paths}
     assert {"histogram-angle", "lifetime-life", "pairs", "inputs", "pawn-angle"} < stems
     for kind in ("regimes", "quantiles", "scatter", "convergence"):
@@ -41,11 +51,11 @@ def test_every_figure_of_a_study_is_written_as_png_svg_and_pdf(tmp_path):
             assert 600 < imread(path).shape[1] / columns < 800
         elif path.suffix == ".svg":
             assert ElementTree.parse(path).getroot().tag.endswith("svg")
-        else:
+        elif path.suffix == ".pdf":
             assert path.read_bytes().startswith(b"%PDF-")
 
 
-@pytest.mark.parametrize("figure", ["histogram", "scatter", "regimes", "quantiles", "inputs"])
+@pytest.mark.parametrize("figure", ["histogram", "scatter", "regimes", "inputs"])
 def test_figures_are_drawn_into_axes_that_are_given(figure):
     ds, (whole, (left, right)) = kinds(samples=40), plt.subplots(1, 2, layout="constrained")
     entry = plots.FIGURES[figure]
@@ -54,7 +64,7 @@ def test_figures_are_drawn_into_axes_that_are_given(figure):
     whole.draw_without_rendering()
     (alone,) = {len(entry.draw(ds, *names).axes)}
     drawn = [axes for axes in whole.axes if axes is not left and axes.axison]
-    assert len(drawn) == alone or figure == "quantiles"
+    assert len(drawn) == alone
     middle = whole.bbox.width / 2
     assert all(axes.bbox.x0 >= middle for axes in drawn)
     assert not left.lines and not left.texts and not whole.legends
@@ -73,17 +83,16 @@ def test_panels_need_axes_of_a_grid():
         (linear("morris", samples=8, replicates=2), {"morris-y"}),
         pytest.param(
             linear(samples=32),
-            {"histogram-y", "quantiles-y", "scatter-y", "convergence-y", "inputs"},
+            {"histogram-y", "scatter-y", "convergence-y", "inputs"},
             marks=pytest.mark.slow,
         ),
     ],
     ids=["one figure", "all figures"],
 )
 def test_the_same_result_gives_the_same_bytes(tmp_path, ds, included):
-    once, again = (plots.save_all(Result(ds), tmp_path / name) for name in ("once", "again"))
-    stems = {path.stem for path in once}
+    once, again = (all_files(ds, tmp_path / name) for name in ("once", "again"))
+    stems = {path.stem for path in once if path.suffix in (".png", ".svg", ".pdf")}
     assert included <= stems == files(ds)
-    assert len(once) == 3 * len(stems)
     for file, other in zip(once, again, strict=True):
         assert file.read_bytes() == other.read_bytes()
 
@@ -92,7 +101,7 @@ def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
     draw, drawn = Figure.draw, []
     monkeypatch.setattr(Figure, "draw", lambda *given: (drawn.append(given), draw(*given)))
     ds = linear("morris", samples=8, replicates=2)
-    paths = plots.save_all(Result(ds), tmp_path)
+    paths = all_files(ds, tmp_path)
     assert len(drawn) == len(paths) == 3 * len(files(ds))
 
 
@@ -106,7 +115,6 @@ def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
                 ("scatter", ["angle"]),
                 ("pairs", []),
                 ("inputs", []),
-                ("quantile_table", ["work"]),
             )
         ),
     ],
@@ -125,7 +133,7 @@ def test_categories_alone_have_the_indices_of_each():
 @pytest.mark.slow
 def test_categories_alone_are_drawn(tmp_path):
     ds = kinds(analysis={"outputs": ["regime"]})
-    stems = {path.stem for path in plots.save_all(Result(ds), tmp_path)}
+    stems = {path.stem for path in all_files(ds, tmp_path)}
     assert stems == files(ds)
 
 
@@ -133,3 +141,86 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="file: cannot create this folder"):
         plots.save_all(Result(linear()), tmp_path / "file")
+
+
+@pytest.fixture(scope="module")
+def lives():
+    """Return a result about a life, which also has angles and regimes."""
+    asked = {"outputs": ["angle", "life", "work"], "thresholds": {"life": 1.0}}
+    return Result(kinds(samples=96, analysis=asked))
+
+
+def names(paths):
+    """Return the names of files."""
+    return [path.name for path in paths]
+
+
+def test_by_default_a_few_figures_are_about_the_subject_of_the_study(lives, tmp_path):
+    drawn = names(plots.save_all(lives, tmp_path))
+    assert drawn[0] == "lifetime-life.png" and len(drawn) <= 10
+    assert all(name.endswith(".png") for name in drawn)
+    assert not any("work" in name or "convergence" in name for name in drawn)
+
+
+def test_one_figure_is_drawn_by_its_kind_its_output_or_its_file_name(lives, tmp_path):
+    kind = plots.save_all(lives, tmp_path, only=["histogram"])
+    assert names(kind) == ["histogram-angle.png", "histogram-work.png"]
+    file = plots.save_all(lives, tmp_path, only=["histogram-work"])
+    assert names(file) == ["histogram-work.png"]
+    both = plots.save_all(lives, tmp_path, only=["histogram"], outputs=["work"])
+    assert names(both) == ["histogram-work.png"]
+    about = names(plots.save_all(lives, tmp_path, outputs=["work"]))
+    assert about[0] == "histogram-work.png" and "lifetime-life.png" not in about
+
+
+def test_a_table_is_written_as_csv_and_latex(lives, tmp_path):
+    csv, tex = plots.save_all(lives, tmp_path, only=["quantiles"], outputs=["angle"])
+    assert csv.read_text().splitlines()[0].startswith("quantile,") and len(tex.read_text()) > 100
+    assert r"50 \% & " in tex.read_text() and r"\bottomrule" in tex.read_text()
+
+
+@pytest.mark.parametrize("width", ["84mm", "17.4 cm"])
+def test_figures_have_the_width_asked_for(lives, width, tmp_path):
+    metres = width_in_metres(width)
+    (file,) = plots.save_all(lives, tmp_path, only=["scatter-life"], width=metres)
+    assert imread(file).shape[1] == pytest.approx(200 * metres / 0.0254, abs=1)
+
+
+def test_without_titles_nothing_stands_above_a_figure(lives, tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(plots, "write", lambda figure, path, formats: drawn.append(figure) or [])
+    plots.save_all(lives, tmp_path, titles=False)
+    assert drawn and not any(axes.get_title(loc="left") for figure in drawn for axes in figure.axes)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"only": ["histgram"]}, "no figure 'histgram'.*did you mean 'histogram'"),
+        ({"only": ["histogram-wrk"]}, "did you mean 'histogram-work'"),
+        ({"outputs": ["lfe"]}, "no output 'lfe' in this result; did you mean 'life'"),
+        ({"formats": ["jpg"]}, "no format 'jpg'.*png, svg, pdf"),
+        ({"only": ["lifetime"], "outputs": ["work"]}, "no such figure of work"),
+    ],
+)
+def test_a_figure_that_does_not_exist_is_refused(lives, options, message, tmp_path):
+    with pytest.raises(InputError, match=message):
+        plots.save_all(lives, tmp_path / "new", **options)
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("text", ["84", "84 s", "wide", "1mm", "9 m"])
+def test_a_width_that_is_none_is_refused(text):
+    with pytest.raises(InputError, match="--width"):
+        width_in_metres(text)
+
+
+def test_a_full_disk_leaves_no_part_of_a_figure(lives, tmp_path, monkeypatch):
+    def fails(figure, path, **options):
+        path.write_bytes(b"part")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(FigureCanvasAgg, "print_png", fails)
+    with pytest.raises(InputError, match="cannot write a figure: No space left on device"):
+        plots.save_all(lives, tmp_path, only=["histogram-work"])
+    assert not list(tmp_path.iterdir())

@@ -79,9 +79,10 @@ def test_what_an_input_without_effect_has_is_a_line_across_the_bars():
 
 def test_a_table_has_one_unit():
     ds = lives(linear(samples=64))
-    text = words(plots.quantile_table(ds, "day_long"))
+    table = plots.quantile_table(ds, "day_long")
     value, low, high = median(ds)
-    assert "[days]" in text and f"50 % {value:.1f} {low:.1f} to {high:.1f}" in text
+    assert "[days]" in table.columns[1]
+    assert table.iloc[1].tolist() == ["50 %", f"{value:.1f}", f"{low:.1f} to {high:.1f}"]
 
 
 def test_points_and_bars_stand_in_the_unit_of_their_axis():
@@ -125,7 +126,8 @@ def test_censored_rows_are_points_of_their_own_and_not_in_a_histogram_of_ends():
     }
     assert markers["."] == (finite & ~censored).sum() and markers["^"] == censored.sum() > 0
     slow, fast = plots.histogram_by_regime(ds, name).axes[0].patches
-    share = np.sum(slow.get_data().values - slow.get_data().baseline)
+    edges = slow.get_data().edges
+    share = np.sum((slow.get_data().values - slow.get_data().baseline) * np.diff(edges))
     ended = finite & ~censored
     assert share == pytest.approx((ds["regime"].values[ended] == 0).mean())
 
@@ -170,9 +172,9 @@ def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer
     assert np.allclose(drawn, [share.value for share in event.curve.shares])
     (legend,) = figure.legends  # which says what line and band are
     assert [text.get_text() for text in legend.get_texts()] == [
-        "in parts of the input",
-        "95 % intervals, pointwise",
-        "of all rows",
+        "slices of the input",
+        "95 % intervals",
+        f"all rows: {100 * event.share.value:.1f} %",
     ]
 
 
