@@ -1,8 +1,9 @@
 """Exceptions with messages for the user: plain lines instead of a traceback."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
+from pathlib import PurePath
 
 
 class InputError(Exception):
@@ -72,7 +73,7 @@ def choices(names: Iterable[str], most: int = 6) -> str:
     return f"{shown} and {more} more" if more > 0 else shown
 
 
-def nearest(name: str, choices: Iterable[str]) -> str:
+def nearest(name: str, choices: Iterable[str], key: Callable[[str], str] = str.lower) -> str:
     """Return ``"; did you mean 'x'?"`` for the choice closest to `name`, or ``""``.
 
     Parameters
@@ -81,12 +82,19 @@ def nearest(name: str, choices: Iterable[str]) -> str:
         Name given by the user.
     choices : iterable of str
         Allowed names.
+    key : callable
+        Gives the part of a name that is compared.
 
     Returns
     -------
     str
         Text to append to an error line.
     """
-    by_lower = {choice.lower(): choice for choice in choices}
-    close = get_close_matches(name.lower(), by_lower, n=1)
-    return f"; did you mean '{by_lower[close[0]]}'?" if close else ""
+    by_key = {key(choice): choice for choice in choices}
+    close = get_close_matches(key(name), by_key, n=1)
+    return f"; did you mean '{by_key[close[0]]}'?" if close else ""
+
+
+def nearest_file(name: str, files: Iterable[str]) -> str:
+    """Return `nearest` of file names, compared without folder and ending, which they may share."""
+    return nearest(name, files, lambda file: PurePath(file).stem.lower())

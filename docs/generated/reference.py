@@ -47,7 +47,9 @@ def _verb(name: str, command: Any) -> str:
         if one.param_type_name == "option"
     ]
     options = "\n\n" + table(("option", ""), lines) if lines else ""
-    return f"## uq {name}\n\n`uq {name} {usage}`".replace(" `", "`") + f": {command.help}{options}"
+    usage = f"`uq {name} {usage}`".replace(" `", "`")
+    example = command.epilog.partition("Example:\n")[2].strip()
+    return f"## uq {name}\n\n{usage}: {command.help}\n\n```sh\n{example}\n```{options}"
 
 
 def _metavar(argument: Any) -> str:

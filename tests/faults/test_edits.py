@@ -16,7 +16,7 @@ import uq
             marks=pytest.mark.slow,
         ),
         pytest.param(
-            *("x2 =", "# x2 =", '[uncertain.x2] distribution = "uniform", now nothing'),
+            *("x2 =", "# x2 =", '[uncertain.x2] distribution = "uniform", no longer given'),
             marks=pytest.mark.slow,
         ),
     ],

@@ -291,7 +291,9 @@ MISTAKES = {
     "row absent.nc 3": "absent.nc: no such file",
     "row absent.nc many": "uq: Invalid value for 'N': ",
     "row absent.nc --near-quantile 0.05": "uq: Option '--near-quantile' requires 2 arguments",
-    "summary small.toml": "small.toml: not a readable netCDF file",
+    "summary small.toml": (
+        "small.toml: not a readable netCDF file; 'uq run small.toml' computes the result of a study"
+    ),
     "sensitivity folder": "folder: is a folder, not a result",
     "plot absent.nc": "absent.nc: no such file",
 }

@@ -20,7 +20,7 @@ from uq.study.definition import Study
 from uq.study.file import DesignTable
 from uq.study.hints import hints
 from uq.study.row_sampling import group_size, rows
-from uq.text.numbers import counted, in_brackets, law, listed, quantity, threshold
+from uq.text.numbers import counted, elapsed, in_brackets, law, listed, quantity, threshold
 from uq.text.units import powers, typical, unit_of
 
 
@@ -178,12 +178,12 @@ def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed])
     pilot_rows = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
     sure = cost.seconds_high < _SURE * cost.seconds
     compiled = "" if isinstance(study.model.batch, RowByRow) else ", once the model is compiled"
-    band = "" if sure else f"; {_clock(cost.seconds_low)} to {_clock(cost.seconds_high)}"
+    band = "" if sure else f"; {elapsed(cost.seconds_low)} to {elapsed(cost.seconds_high)}"
     grid(
         [
             ("rows", str(cost.rows), pilot_rows),
             ("a row", quantity(cost.row_seconds, "s"), "of one process"),
-            ("time", _clock(cost.seconds), f"with {processes}{compiled}{band}"),
+            ("time", elapsed(cost.seconds), f"with {processes}{compiled}{band}"),
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
             *(
                 (name.replace("_", " "), counted(need.rows, "row"), _why_needed(need, cost))
@@ -239,13 +239,6 @@ def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:
 
 def _short(width: float | None, per: float = 1.0) -> str:
     return "-" if width is None else f"{width / per:.3g}"
-
-
-def _clock(seconds: float) -> str:
-    if seconds < 120:
-        return f"{seconds:.0f} s"
-    minutes = round(seconds / 60)
-    return f"{minutes} min" if minutes < 120 else f"{seconds / 3600:.1f} h"
 
 
 def _size(count: int) -> str:

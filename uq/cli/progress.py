@@ -2,6 +2,7 @@
 
 import sys
 import time
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache, partial
@@ -10,11 +11,14 @@ from math import isinf
 from uq.execution.options import Progress, Report
 from uq.files.interrupts import undone
 from uq.text.literals import plain_line
-from uq.text.numbers import duration, number
+from uq.text.numbers import duration, elapsed, number
 
 _PLAIN_SECONDS = 10.0
 _PLAIN_WIDTH = 120
 _START_SECONDS = 5.0  # in which the processes of a run start
+_PAUSE_SECONDS = 1.0  # without a row under way: longer than it takes to keep rows
+_WINDOW_SECONDS = 5.0  # least time over which rows are counted
+_MINUTE = 59.5  # s
 _COMPILING = "compiling the model (once; it may take a minute)"
 
 
@@ -37,27 +41,39 @@ def say_compiling() -> None:
 class Pace:
     """Rows per second, without the time in which processes start and models compile.
 
-    Time counts from the arrival of the first rows, or from the start if these rows took longer than
-    starting processes: slow rows of several workers arrive together.
+    Time counts from the arrival of the first rows, or from the start if one row took longer than
+    starting processes: slow rows of several workers arrive together. Only the later half of that
+    time counts, so that a slow beginning and changes of load are forgotten.
     """
 
     def __init__(self) -> None:
-        self._began: tuple[int, float] | None = None
+        self._last = Progress(0, 0, 0), 0.0
         self._arrived = False
+        self._seen: deque[tuple[int, float]] = deque()
+        self._began = 0.0
 
     def __call__(self, progress: Progress, now: float) -> float:
         """Return the pace at a time [s]; 0 while it is unknown."""
+        (last, before), self._last = self._last, (progress, now)
         if progress.compiling:
-            self._began = None
+            self._seen.clear()
             return 0.0
-        if self._began is None:
-            self._began = progress.done, now
+        idle = progress.under_way and not last.under_way and progress.done == last.done
+        if idle and now - before > _PAUSE_SECONDS:  # workers have started
+            self._seen.clear()
         if progress.done > progress.reused and not self._arrived:
             self._arrived = True
-            if now - self._began[1] < _START_SECONDS:
-                self._began = progress.done, now
-        done, began = self._began
-        return (progress.done - done) / (now - began) if now > began else 0.0
+            is_chunk = progress.done > progress.reused + 1  # its time includes loading the model
+            if self._seen and (is_chunk or now - self._began < _START_SECONDS):
+                self._seen.clear()
+        if not self._seen:
+            self._began = now
+        self._seen.append((progress.done, now))
+        earliest = now - max(_WINDOW_SECONDS, (now - self._began) / 2)
+        while len(self._seen) > 1 and self._seen[1][1] <= earliest:
+            self._seen.popleft()
+        done, since = self._seen[0]
+        return (progress.done - done) / (now - since) if now > since else 0.0
 
 
 def _plain() -> Iterator[Report]:
@@ -152,7 +168,8 @@ def sentence(progress: Progress, pace: float, since: float = 0.0) -> str:
         text += f"{progress.under_way} under way, "
     if pace:
         left = max((progress.total - progress.done) / pace - since, 0.0)
-        text += f"{pace:.3g} rows/s, {_clock(left)} left, "
+        about = f"about {elapsed(left)}" if left >= _MINUTE else "less than 1 min"
+        text += f"{pace:.3g} rows/s, {about} left, "
     return f"{text}{progress.failed} failed"
 
 
@@ -168,9 +185,3 @@ def details(progress: Progress) -> list[str]:
     if progress.shares:
         lines.append(", ".join(f"{name} {share:.0%}" for name, share in progress.shares.items()))
     return lines
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"

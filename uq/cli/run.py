@@ -20,7 +20,7 @@ from uq.execution.row_folder import folder_of
 from uq.result.result import Result
 from uq.result.result_file import with_model
 from uq.study.definition import Study
-from uq.text.numbers import counted
+from uq.text.numbers import counted, elapsed
 
 
 def loaded(
@@ -66,7 +66,7 @@ def carried_out(
         ds = action(replace(options, progress=report, say=say))
     before = f"; {reused} computed before" if reused else ""
     seconds = time.monotonic() - began
-    return ds, f"{target}: {counted(computed, 'row')} computed in {seconds:.1f} s{before}"
+    return ds, f"{target}: {counted(computed, 'row')} computed in {elapsed(seconds)}{before}"
 
 
 def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixed: bool) -> int:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from uq.cli import progress
-from uq.cli.printing import console, duration, grid, heading, note, print_json
+from uq.cli.printing import console, grid, heading, note, print_json
 from uq.cli.progress import say_compiling
 from uq.cli.simulate import as_json, check_files, draw, show_outputs
 from uq.contract import Status
@@ -19,7 +19,7 @@ from uq.machines.compilation import compilation
 from uq.result import result_file
 from uq.result.result import Result
 from uq.study.installed_models import find_model
-from uq.text.numbers import capitalized, counted, quantity
+from uq.text.numbers import capitalized, counted, elapsed, quantity
 
 
 def status(path: Path, json: bool) -> None:
@@ -33,7 +33,7 @@ def _show_status(run: RunStatus) -> None:
     by = f" (process {writer['pid']} on {writer['host']})" if writer else ""
     heading(f"{run.output}: {run.state}{by}")
     rate, left = run.rate, run.seconds_left
-    time_left = (duration(left) or f"{left:.0f} s") if left else ""
+    time_left = elapsed(left) if left else ""
     statuses = [f"{count} {label}" for label, count in run.status.items()]
     grid(
         [

@@ -25,7 +25,7 @@ from uq.machines.row_by_row import RowByRow
 from uq.study.evaluate import RowFailure
 from uq.study.installed_models import code_of, located, model_at, with_returns
 from uq.study.sources import DISTRIBUTION
-from uq.text.numbers import counted, duration
+from uq.text.numbers import counted, elapsed
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -167,7 +167,7 @@ def _returned(
             return
         announced = True
         more = seconds / done * left if done else 0.0
-        about = f": about {duration(more) or f'{more:.0f} s'}" if done else ""
+        about = f": about {elapsed(more)}" if done else ""
         say(
             f"running {counted(left, 'row')}, once, to see what the model returns{about}; 'returns'"
             " in @uq.machine states it"

@@ -32,7 +32,7 @@ from uq.stats.quantile_functions import student
 from uq.study.definition import Study
 from uq.study.evaluate import Chunk, joined
 from uq.study.row_sampling import Rows
-from uq.text.numbers import duration
+from uq.text.numbers import elapsed
 
 PILOT_SECONDS = 8.0
 """Time for the pilot, once the model is compiled."""
@@ -126,8 +126,10 @@ def pilot(
         least = _CHUNKS_AT_LEAST * count
         if size * row_seconds > _LONG_SECONDS:
             least = max(_CHUNKS_AT_LEAST, count)
-            row_duration = duration(row_seconds) or f"{row_seconds:.3g} s"
-            say(f"a row takes about {row_duration}: running {least * size} more, {count} at a time")
+            say(
+                f"a row takes about {elapsed(row_seconds)}: running {least * size} more, {count} at"
+                " a time"
+            )
         done, chunks = _spread_chunks(workload, evaluators, size, least)
     starts, row_blocks, computed_chunks, seconds = zip(*done, strict=True)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*row_blocks, strict=True)))

@@ -19,6 +19,9 @@ from typing import Any
 import numpy as np
 
 _HDF5, _CLASSIC = b"\x89HDF\r\n\x1a\n", b"CDF"
+SIGNATURES = (_HDF5, _CLASSIC)
+"""Bytes with which a netCDF file begins, one of these."""
+
 _SLACK, _INFLATION = 100_000_000, 20  # bytes claimed, beyond a multiple of those on the disk
 _MOST_OBJECTS, _MOST_ATTRIBUTES = 20_000, 1_000
 _LARGEST_CHUNK = 200_000_000  # bytes; each is read as a whole

@@ -10,7 +10,7 @@ from errno import ENAMETOOLONG
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from uq.errors import InputError, RunError, nearest
+from uq.errors import InputError, RunError, nearest_file
 from uq.files.interrupts import undone
 from uq.files.netcdf_files import seal
 
@@ -55,7 +55,7 @@ def file_there(path: Path) -> None:
     if not path.is_file():
         others = path.parent.glob(f"*{path.suffix}") if path.parent.is_dir() else []
         raise InputError(
-            f"{path}: no such file{nearest(path.name, [other.name for other in others])}"
+            f"{path}: no such file{nearest_file(path.name, [other.name for other in others])}"
         )
 
 

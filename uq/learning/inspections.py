@@ -9,7 +9,7 @@ from math import isfinite
 from numbers import Real
 from pathlib import Path
 
-from uq.errors import InputError, nearest
+from uq.errors import InputError, nearest, nearest_file
 from uq.files.whole_files import node
 from uq.text.literals import read_number, read_toml, shown
 
@@ -164,7 +164,7 @@ def _lines(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
         raise InputError(f"{path}: is {node_kind}, not a file")
     if not path.is_file():
         names = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
-        raise InputError(f"{path}: no such file{nearest(path.name, names)}")
+        raise InputError(f"{path}: no such file{nearest_file(path.name, names)}")
     try:
         with path.open(newline="", encoding="utf-8-sig") as text:
             rows = csv.reader(text, skipinitialspace=True, strict=True)

@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Model
-from uq.errors import InputError, choices, nearest
+from uq.errors import InputError, choices, nearest_file
 from uq.files.netcdf_files import CHECKSUM, most_bytes, refuse_tricks
 from uq.files.whole_files import node
 from uq.result.soundness import unsound
@@ -166,7 +166,7 @@ def build_rows(
     return xr.Dataset(inputs | outputs, coordinates(model, settings), attrs)
 
 
-def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") -> xr.Dataset:
+def open_result(path: str | Path, remedy: str = "") -> xr.Dataset:
     """Open a result and check its schema.
 
     A result below 200 MB is read into memory and its file closed; a larger one is read lazily.
@@ -175,7 +175,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     ----------
     path : str or Path
     remedy : str, optional
-        The advice in error messages.
+        The advice in error messages; default: how results are made.
 
     Returns
     -------
@@ -193,6 +193,9 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     True
     """
     path = Path(path)
+    if not remedy and path.suffix == ".toml":
+        remedy = f"'uq run {shlex.quote(str(path))}' computes the result of a study"
+    remedy = remedy or "'uq run STUDY' makes results"
     if kind := node(path):
         inside = _others(path / "_") if os.path.isdir(path) else ""
         raise InputError(f"{path}: is {kind}, not a result{inside}; {remedy}")
@@ -273,7 +276,7 @@ def upgraded(ds: xr.Dataset) -> xr.Dataset:
 def _others(path: Path) -> str:
     """List the results in the folder of a path that is not a result."""
     names = sorted(file.name for file in path.parent.glob("*.nc"))
-    return nearest(path.name, names) or (f" (there: {choices(names)})" if names else "")
+    return nearest_file(path.name, names) or (f" (there: {choices(names)})" if names else "")
 
 
 def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:

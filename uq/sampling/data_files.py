@@ -15,7 +15,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from uq.contract import Floats
-from uq.errors import nearest
+from uq.errors import nearest, nearest_file
 from uq.files.netcdf_files import refuse_tricks
 from uq.files.whole_files import node
 from uq.sampling.designs import IMPORTED
@@ -126,7 +126,7 @@ def _read(folder: Path | None, file: str, column: str) -> Floats:
         raise ValueError(f"is {kind}, not a file")
     if not path.is_file():
         names = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
-        raise ValueError(f"no such file in {folder.absolute()}{nearest(path.name, names)}")
+        raise ValueError(f"no such file in {folder.absolute()}{nearest_file(path.name, names)}")
     read = _read_netcdf if path.suffix == ".nc" else _read_csv
     try:
         return _checked(read(path, column))

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from os import PathLike
@@ -9,7 +10,8 @@ from pathlib import Path
 from typing import Any, Self
 
 from uq.contract import Model
-from uq.errors import InputError, nearest
+from uq.errors import InputError, nearest_file
+from uq.files.netcdf_files import SIGNATURES
 from uq.sampling.data_files import columns_of_files, numbers, with_columns
 from uq.sampling.designs import DESIGNS, IMPORTED
 from uq.sampling.input_faults import InputFault
@@ -250,13 +252,21 @@ def _read(path: Path) -> str:
     try:
         with path.open("rb") as file:
             content = file.read(_LONGEST + 1)
+        if content.startswith(SIGNATURES):
+            file = shlex.quote(str(path))
+            raise InputError(
+                f"{path}: is a netCDF file, not a study; of a result, 'uq summary {file}' shows the"
+                f" answer, and 'uq extend {file} --samples N' adds rows"
+            )
         if len(content) > _LONGEST:
             raise InputError(f"{path}: a study is at most {_LONGEST // 1_000_000} MB long")
         return content.decode("utf-8-sig")
     except FileNotFoundError:
         folder = path.parent
-        files = [entry.name for entry in folder.glob("*.toml")] if folder.is_dir() else []
-        remedy = nearest(path.name, files) or f"; 'uq init MODEL > {path.name}' writes one to edit"
+        files = [*folder.glob("studies/*.toml"), *folder.glob("*.toml")]
+        names = [str(file.relative_to(folder)) for file in files]
+        begin = f"; 'uq init MODEL > {path.name}' writes one to edit"
+        remedy = nearest_file(path.name, names) or begin
         raise InputError(f"{path}: no such file{remedy}") from None
     except IsADirectoryError:
         raise InputError(f"{path}: is a directory; a study is a TOML file") from None
@@ -304,10 +314,12 @@ def what_changed(text: str, model_version: str, study: Study) -> str:
     for place in before | now:
         if before.get(place) != now.get(place):
             *tables, name = place
-            old, new = (
-                shown(entry[place]) if place in entry else "nothing" for entry in (before, now)
-            )
-            return f"[{'.'.join(tables)}] {name} = {old}, now {new}"
+            entry = f"[{'.'.join(tables)}] {name}"
+            if place not in before:
+                return f"{entry} = {shown(now[place])}, not given before"
+            if place not in now:
+                return f"{entry} = {shown(before[place])}, no longer given"
+            return f"{entry} = {shown(before[place])}, now {shown(now[place])}"
     if model_version != study.model.version:
         return f"version {model_version} of model '{study.model.name}', now {study.model.version}"
     if list(before) != list(now):

@@ -150,8 +150,8 @@ def _installed(name: str, folder: Path | None = None) -> EntryPoint:
     if name not in installed:
         if file := file_with(name, filter(None, (Path(), folder))):
             raise InputError(
-                f"model '{name}' is not installed; {file} has it: name that file, for a study"
-                f" or a result with --model {file}"
+                f"model '{name}' is not installed, but {file} defines it; add --model {file}, or"
+                f" give {file} where a model is named"
             )
         names = ", ".join(sorted(installed)) or "none"
         raise InputError(

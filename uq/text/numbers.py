@@ -80,6 +80,23 @@ def duration(seconds: float | None) -> str:
     return "" if unit.name == "seconds" else f"{seconds / unit.size:.3g} {unit.name}"
 
 
+_ELAPSED = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0))  # unit, its size [s]
+
+
+def elapsed(seconds: float) -> str:
+    """Return the time of a computation as text: ``8.3 s``, ``3 min``, ``2.5 h``, ``4 days``.
+
+    Parameters
+    ----------
+    seconds : float
+        [s]
+    """
+    fitting = [unit for unit in _ELAPSED if round(seconds) >= unit[1]]
+    name, size = fitting[-1] if fitting else _ELAPSED[0]
+    value = seconds / size
+    return f"{value:.0f} {name}" if value >= 9.95 else f"{float(f'{value:.2g}'):g} {name}"
+
+
 def threshold(value: float, units: str) -> str:
     """Return a threshold [CF units] as written by the user: ``24 hours``, ``12°``.
 

@@ -1,6 +1,7 @@
 """The command line: what it prints and where, verb by verb."""
 
 import json
+import shlex
 from math import inf, nan
 from pathlib import Path
 
@@ -11,18 +12,45 @@ from wordings import sentence
 import uq as api
 from uq.cli.printing import print_json
 
+GROUPS = {
+    "Start": "models init simulate schema serve",
+    "Run": "plan run status extend rerun",
+    "Read": "summary sensitivity levels twin plot report",
+    "Decide": "compare what-if fleet rare-event",
+    "Learn": "update next-inspection",
+    "Check": "check convergence verify row trace",
+}
 
-def test_help_lists_every_verb(uq):
-    ended = uq("--help")
+
+@pytest.mark.parametrize("option", ["--help", "-h"])
+def test_help_lists_every_verb_in_its_group(uq, option):
+    ended = uq(option)
     assert ended.code == 0
-    verbs = (
-        "models simulate init check schema serve plan run status extend rerun verify row summary "
-        "sensitivity levels fleet convergence compare what-if update next-inspection twin trace "
-        "rare-event plot report"
-    ).split()
-    listed = ended.out.partition("Commands:\n")[2]
-    assert [line.split()[0] for line in listed.splitlines() if line.strip()] == verbs
-    assert "..." not in listed
+    listed, heading = {}, ""
+    for line in ended.out.splitlines():
+        if line.startswith("  "):
+            listed.setdefault(heading, []).append(line.split()[0])
+        else:
+            heading = line.rstrip(":")
+    assert {heading: " ".join(listed[heading]) for heading in GROUPS} == GROUPS
+    assert list(listed)[-len(GROUPS) :] == list(GROUPS)
+    assert "..." not in ended.out.partition("\nStart:")[2]
+    assert max(map(len, ended.out.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("verb", " ".join(GROUPS.values()).split())
+def test_the_help_of_a_verb_ends_with_an_example_that_parses(uq, verb):
+    import typer
+
+    from uq.cli.app import app
+
+    ended = uq(verb, "-h")
+    assert ended == uq(verb, "--help") and ended.code == 0
+    assert max(map(len, ended.out.splitlines())) <= 80
+    example = ended.out.partition("  Example:\n")[2].strip()
+    name, given, *arguments = shlex.split(example.partition(" > ")[0])
+    assert (name, given, example.count("\n")) == ("uq", verb, 0)
+    typer.main.get_command(app).commands[verb].make_context(verb, arguments)
 
 
 def test_no_argument_asks_what_to_do_next(uq, write_study, folder):

@@ -12,7 +12,7 @@ from wordings import MISTAKES
 
 NEXT_STEP = re.compile(
     r"[Dd]id you mean|[Ss]ee '|must |allowed: |installed: |choose |give |write it |leave out"
-    r"|'uq run STUDY'|'uq init |install it|exclude each other|a study is a TOML file"
+    r"|'uq run |'uq init |install it|exclude each other|a study is a TOML file"
     r"|supported formats|at line \d+, column"
 )
 """What a line says that can be done, or what would be right."""

@@ -241,6 +241,22 @@ def test_the_result_of_something_else_is_kept(write_study, folder):
     assert runner.run(other, "out.nc", fresh=True).attrs["samples"] == 32
 
 
+def test_an_entry_that_one_study_lacks_is_named(write_study, folder):
+    path = write_study(method="sobol")
+    first = path.read_text()
+    second, neither = (first.replace("replicates = 1", line) for line in ("replicates = 2", ""))
+    for before, now, words in (
+        (first, second, "= 1, now 2"),
+        (neither, second, "= 2, not given before"),
+        (second, neither, "= 2, no longer given"),
+    ):
+        path.write_text(before)
+        runner.run(path, "out.nc", workers=0, fresh=True)
+        path.write_text(now)
+        with pytest.raises(InputError, match=rf"\(\[design\] replicates {words}\);"):
+            runner.run(path, "out.nc")
+
+
 def test_the_output_is_checked_before_anything_is_computed(write_study, folder):
     computed = []
     with pytest.raises(InputError, match="is a folder"):

@@ -101,7 +101,7 @@ def test_a_study_names_no_code(uq, write_function):
 
 def test_an_own_model_that_is_not_named_is_asked_for(uq, folder, write_function):
     file = write_function(WEAR)
-    assert f"{file} has it: name that file" in uq("check", "own.toml").err
+    assert f"{file} defines it; add --model {file}" in uq("check", "own.toml").err
     (folder / file).unlink()
     assert "a model of your own is named by its file" in uq("check", "own.toml").err
 

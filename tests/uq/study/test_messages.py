@@ -103,7 +103,8 @@ def test_an_empty_file_lists_what_it_lacks():
 
 
 def test_a_file_that_cannot_be_read_is_one_line(tmp_path):
-    (tmp_path / "beam-lifetime.toml").write_text(study_text())
+    for name in ("beam-lifetime", "nope"):
+        (tmp_path / f"{name}.toml").write_text(study_text())
     (tmp_path / "latin.toml").write_bytes(b"# caf\xe9")
     (tmp_path / "loop.toml").symlink_to(tmp_path / "loop.toml")
 
@@ -116,6 +117,17 @@ def test_a_file_that_cannot_be_read_is_one_line(tmp_path):
     assert line("") == f"{tmp_path}: is a directory; a study is a TOML file"
     missing = f"{tmp_path}/beam-liftime.toml: no such file; did you mean 'beam-lifetime.toml'?"
     assert line("beam-liftime.toml") == missing
+    assert "did you mean" not in line("mine.toml")  # the ending alone is no likeness
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "mole-outcome.toml").write_text(study_text())
+    assert line("mole-outcom").endswith("did you mean 'studies/mole-outcome.toml'?")
+    for start in (b"\x89HDF\r\n\x1a\n", b"CDF\x01"):
+        (tmp_path / "out.nc").write_bytes(start + bytes(2_000_000))
+        assert line("out.nc") == (
+            f"{tmp_path}/out.nc: is a netCDF file, not a study; of a result, 'uq summary"
+            f" {tmp_path}/out.nc' shows the answer, and 'uq extend {tmp_path}/out.nc --samples N'"
+            " adds rows"
+        )
     assert line("nowhere/x.toml") == (
         f"{tmp_path}/nowhere/x.toml: no such file; 'uq init MODEL > x.toml' writes one to edit"
     )

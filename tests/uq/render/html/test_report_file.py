@@ -41,7 +41,7 @@ def test_reports_that_cannot_be_made_are_refused_in_a_line(uq, folder):
     for arguments, line in (
         (
             ("none.nc",),
-            "none.nc: no such file; did you mean 'out.nc'?; 'uq run STUDY' makes results\n",
+            "none.nc: no such file (there: out.nc); 'uq run STUDY' makes results\n",
         ),
         (
             ("out.nc", "-o", "out.nc"),
