@@ -1,16 +1,16 @@
-"""The blocks of the README and the guide, run in order as a reader would: ``python docs/quoted.py``.
+"""The blocks of the README and the guide, run in order as a reader would.
 
 The blocks of a page run in a folder of their own that contains the shipped studies:
 
-- a block that begins with a comment of a file's name, ``# pad.py``, or follows one with a colon,
-  ````found.csv`:``, is written to that file;
+- a block that begins with a comment of a file's name, ``# pad.py``, or follows a sentence that
+  ends with its name and a colon, is written to that file;
 - in a shell block, every line that begins with ``uq`` runs; other lines install or start something;
 - Python blocks run, in one session;
 - a block that begins with a comment ``# needs ...`` is not run: it says what it needs.
 
 A block below the mark ``<!-- printed -->`` quotes what the command before it prints, below
-``<!-- printed, first paragraph -->`` the first paragraph of that. The command writes the quotes of
-all pages anew.
+``<!-- printed, first paragraph -->`` the first paragraph of that. ``python docs/quoted.py`` writes
+the quotes of all pages anew.
 """
 
 import os
