@@ -38,12 +38,12 @@ faults: $(TEST)
 	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
 
 # The figures of the machines' papers from our data, docs/papers.md and docs/papers/*.svg, and the
-# gallery, pictures of the machines and of the house, and the answer that the README quotes.
+# gallery, pictures of the machines and of the house, and what the pages quote of commands.
 figures: $(BASE)
 	@$(BIN)/python docs/papers
 	@cd docs && ../$(BIN)/python -m sketches && ../$(BIN)/python -m gallery
 	@$(BIN)/python docs/house.py
-	@$(BIN)/python docs/first_answer.py
+	@$(BIN)/python docs/quoted.py
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks

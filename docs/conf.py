@@ -24,7 +24,7 @@ for notebook in HERE.parent.glob("notebooks/*.ipynb"):
 
 project = "vibrolife"
 copyright = "2026, the vibrolife developers"
-extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "sphinx_copybutton"]
 exclude_patterns = ["outputs"]
 
 myst_enable_extensions = ["dollarmath"]
@@ -41,9 +41,13 @@ html_theme = "furo"
 html_title = "vibrolife"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_search_scorer = str(HERE / "search_scorer.js")
 html_show_sphinx = False
 html_copy_source = False
 html_math_renderer = "mathml"
+copybutton_selector = ", ".join(  # what one may run or keep, not what is printed
+    f"div.highlight-{language} pre" for language in ("sh", "python", "ipython3", "toml")
+)
 
 
 def _inline(translator: Any, node: Any) -> None:

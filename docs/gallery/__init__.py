@@ -1,5 +1,6 @@
 """Every kind of figure, with the lines that draw it: ``python -m gallery``, in docs."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +15,10 @@ def page() -> str:
 
 
 def _parts() -> Iterator[str]:
+    pictures = "\n".join(
+        f"[![{one.title}](gallery/{one.name}.svg)](#{_anchor(one.title)})" for one in EXAMPLES
+    )
+    yield f"```{{container}} thumbnails\n{pictures}\n```"
     heading = ""
     for one in EXAMPLES:
         if one.heading != heading:
@@ -24,6 +29,10 @@ def _parts() -> Iterator[str]:
         if one.command:
             yield f"```sh\n{one.command}\n```"
         yield f"```python\n{one.code}\n```"
+
+
+def _anchor(title: str) -> str:
+    return re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
 
 
 def drawn(one: Example) -> object:

@@ -71,7 +71,10 @@ def functions(name: str) -> str:
     ]
     offered = {one: getattr(module, one) for one in public}
     lines = [f".. autofunction:: {name}.{one}" for one, f in offered.items() if isfunction(f)]
-    lines += [f".. autoexception:: {name}.{one}" for one, f in offered.items() if isclass(f)]
+    for one, member in offered.items():
+        if isclass(member):
+            kind = "exception" if issubclass(member, Exception) else "class"
+            lines += [f".. auto{kind}:: {name}.{one}", "   :members:"]
     return "\n".join(["```{eval-rst}", *lines, "```"])
 
 

@@ -11,11 +11,11 @@ import tomllib
 from inspect import isfunction
 from pathlib import Path
 
-import first_answer
 import generated
 import house
 import pages
 import pytest
+import quoted
 import sketches
 import yaml
 from matplotlib import pyplot
@@ -41,8 +41,8 @@ SOURCES["docs/gallery.md"] = pages.expanded(SOURCES["docs/gallery.md"])
 every_source = pytest.mark.parametrize("name", SOURCES)
 
 ROOT_OPTIONS = ("--help", "--version", "--install-completion", "--show-completion")
-ELSEWHERE = ("docs/clusters.md", "docs/gallery.md", "docs/guide/learning.md")
-"""Pages whose Python needs a cluster or inspections, or is run by a test of its own."""
+ELSEWHERE = ("docs/clusters.md", "docs/gallery.md", *quoted.PAGES)
+"""Pages whose Python needs a cluster, or is run by a test of its own."""
 EXAMPLES = sorted(
     {
         public_function.__module__
@@ -273,27 +273,14 @@ def test_the_picture_of_a_machine_is_what_its_script_draws_and_shown_where_it_is
     assert f"](../{file})" in SOURCES[f"docs/machines/{machine}.md"]
 
 
-def test_the_answer_that_the_readme_quotes_is_the_one_that_is_printed():
-    texts = first_answer.quoted(), first_answer.printed()
-    quoted, printed = map(numbers, texts)
-    assert len(quoted) > 10
-    assert quoted == pytest.approx(printed, rel=2e-3), "run: python docs/first_answer.py"
-    quoted_words, printed_words = (re.sub(r"\d+(\.\d+)?", "#", text).split() for text in texts)
-    assert quoted_words == printed_words, "run: python docs/first_answer.py"
-
-
 def test_the_study_that_the_readme_shows_is_the_one_that_it_runs():
     shown = tomllib.loads(blocks("README.md", "toml")[0])
-    study = tomllib.loads((HOUSE / first_answer.STUDY).read_text())
+    study = tomllib.loads((HOUSE / "studies/exponential-wear.toml").read_text())
     for law in study["uncertain"].values():
         del law["source"]
     for key in ("description", "seed"):
         study["study"].pop(key, None), study["design"].pop(key, None)
     assert shown == study
-
-
-def numbers(text):
-    return [float(number) for number in re.findall(r"\d+(?:\.\d+)?", text)]
 
 
 def test_every_key_and_every_law_is_described():

@@ -21,9 +21,10 @@ from uq.sampling.input_faults import InputFault
 from uq.sampling.truncation import law_problem
 from uq.stats.estimate_json import number
 from uq.stats.importance_weights import Smoothed, effective_rows, tail_shape
+from uq.study.changes import change, study_text
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
-from uq.text.literals import key, read_toml, shown, toml
+from uq.text.literals import read_toml, shown
 
 SAME = "what if: 'equals' cannot be changed"
 
@@ -165,7 +166,7 @@ def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
     data = read_toml(rows.dataset.attrs["study"])
     for place, value in changes.items():
         _put(data, place, value)
-    text = "\n".join(f"{key(name)} = {toml(value)}" for name, value in data.items())
+    text = study_text(data)
     study = read_study_text(text, "what if")
     inputs = inputs_of(rows, study, text)
     faults = list(_faults(rows, study, inputs))
@@ -184,25 +185,18 @@ def _put(data: dict[str, Any], place: str, value: Any) -> None:
         data[table][rest] = value
         return
     name, _, argument = rest.partition(".")
-    uncertain = data["uncertain"]
     if table != "uncertain" or not name:
         raise InputError(
             f"what if: '{place}' cannot be changed; only uncertain.NAME.KEY, uncertain.NAME and"
             " dependence.rank_correlation can"
         )
-    if name not in uncertain:
+    if name not in data["uncertain"]:
         raise InputError(
-            f"what if: '{name}' is not uncertain in this study{nearest(name, uncertain)}"
+            f"what if: '{name}' is not uncertain in this study{nearest(name, data['uncertain'])}"
         )
     if argument == "equals":
         raise InputError(SAME)
-    kept = {k: v for k, v in uncertain[name].items() if k in ("times", "level", "source")}
-    if not argument:
-        uncertain[name] = kept | value if isinstance(value, dict) else value
-    elif argument == "distribution":
-        uncertain[name] = kept | {argument: value}
-    else:
-        uncertain[name][argument] = value
+    change(data, place, value, "what if")
 
 
 def _faults(rows: Result, study: StudyFile, inputs: Inputs) -> list[InputFault]:

@@ -18,6 +18,7 @@ from uq.execution import disk_store, resuming, tally
 from uq.execution.executor import Dispatcher, Executor
 from uq.execution.loading import load_study
 from uq.execution.options import Progress, Report, RunOptions, Say, ignore
+from uq.execution.scaling_checks import check_scales
 from uq.files import whole_files
 from uq.result import result_file
 from uq.result.result import Result
@@ -96,6 +97,8 @@ def run(
     """
     if not isinstance(study, Study):
         study = load_study(study, row_limit=row_limit)
+    else:
+        check_scales(study, row_limit)  # its laws may have changed since it was loaded
     path = output_path(study, output)
     options = RunOptions(
         workers, scheduler, chunk_rows, row_limit, fresh, mixed, progress or ignore, say or ignore

@@ -2,6 +2,7 @@
 
 Reading order; each part imports only those above it:
 
+    changes           changes of a parsed study file, each named by the place of its entry
     checks            semantic validation of a study file against its model and its design
     sources           source files of a model's module, and of the modules that it imports
     file              schema of a study file: its tables and keys, independent of the model

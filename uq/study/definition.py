@@ -17,6 +17,7 @@ from uq.sampling.designs import DESIGNS, IMPORTED
 from uq.sampling.input_faults import InputFault
 from uq.sampling.law import Law
 from uq.sampling.named_values import read_settings
+from uq.study.changes import change, study_text
 from uq.study.checks import design_faults, model_faults
 from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
@@ -159,6 +160,44 @@ class Study:
         if problem:
             raise InputError(f"samples = {samples}: {problem} for '{self.design.method}'")
         return replace(self, design=self.design.model_copy(update={"samples": samples}))
+
+    def with_changes(self, changes: Mapping[str, Any]) -> "Study":
+        """Return the study with some entries changed, checked as a file would be.
+
+        Parameters
+        ----------
+        changes : dict of str to object
+            Entries of the study file -> their values, as for `uq.what_if`: ``"design.samples"``,
+            ``"settings.depths"``, ``"uncertain.initial_gap.sd"``. A mapping replaces a table. For
+            another law, ``"uncertain.initial_gap": {"distribution": "normal", "mean": 2e-4,
+            "sd": 1e-5}`` keeps `times`, `level` and `source` of the input unless it states its
+            own. None removes an entry.
+
+        Returns
+        -------
+        Study
+            Its text is the changed file, without comments. Change ``"study.name"``, too, or choose
+            another output when it runs: a result belongs to one study.
+
+        Raises
+        ------
+        InputError
+            One line per mistake, with the nearest name.
+
+        Examples
+        --------
+        >>> study = uq.load_study("studies/exponential-wear.toml")
+        >>> wider = study.with_changes({"study.name": "wider", "uncertain.rate.sigma": 0.8})
+        >>> wider.uncertain["rate"].sigma, study.uncertain["rate"].sigma
+        (0.8, 0.5)
+        """
+        data = read_toml(self.text)
+        same = self.model_reference == data["study"]["model"] or "study.model" in changes
+        data["design"]["samples"] = self.design.samples
+        for place, value in changes.items():
+            change(data, place, value, self.path)
+        model = None if same else self.model_reference
+        return study_from_text(study_text(data), self.path, model, Path(self.path).parent)
 
 
 def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
