@@ -67,16 +67,10 @@ function place(element, box) {
 // A button that copies a text, and the place where it says so.
 function copyButton(text) {
   const done = make("span", {role: "status"});
-  const copy = async () => {
-    try {
-      await navigator.clipboard.writeText(text());
-      done.textContent = "Copied";
-      setTimeout(() => { done.textContent = ""; }, 2000);
-    } catch {
-      done.textContent = "Select the command to copy it.";
-    }
-  };
-  return [make("button", {type: "button", "on:click": copy}, "Copy"), done];
+  const isCopied = () => { done.textContent = "Copied"; setTimeout(() => { done.textContent = ""; }, 2000); };
+  const isRefused = () => { done.textContent = "Select the command to copy it."; };
+  const copy = async () => navigator.clipboard.writeText(text());
+  return [make("button", {type: "button", "on:click": () => copy().then(isCopied, isRefused)}, "Copy"), done];
 }
 
 // Call a function once before the next picture, however often it is asked for.
