@@ -10,22 +10,21 @@ HOUSE = Path(__file__).parents[1]
 README = HOUSE / "README.md"
 STUDY = "studies/exponential-wear.toml"
 BEGIN, END = "<!-- answer -->\n\n```text\n", "```\n\n<!-- end of answer -->"
-_WIDTH = 88
 
 
 def printed() -> str:
-    """Run the study, and return the first paragraph that ``uq run`` prints."""
+    """Run the study, and return the card with which ``uq run`` ends."""
     with TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "uq", "run", HOUSE / STUDY]
         text = subprocess.run(
             [*command, "--workers", "0"],
             cwd=folder,
-            env={**os.environ, "COLUMNS": str(_WIDTH), "NO_COLOR": "1"},
+            env={**os.environ, "NO_COLOR": "1"},
             capture_output=True,
             text=True,
             check=True,
         ).stdout
-    lines = text.partition("\n\n")[0].splitlines()
+    lines = text.partition("\n\n")[2].splitlines()
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
 

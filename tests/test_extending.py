@@ -187,7 +187,11 @@ def test_a_statistic_is_one_entry_of_a_table(no_other_figures, uq, write_study, 
 
     entry = json.loads(uq("summary", "one.nc", "--json").out)["outputs"]["y"]["geometric_mean"]
     assert entry["low"] < entry["value"] < entry["high"]
-    (line,) = (x for x in uq("summary", "one.nc").out.splitlines() if "geometric mean" in x)
+    (line,) = (
+        x
+        for x in uq("summary", "one.nc", "--explain", "--full").out.splitlines()
+        if "geometric mean" in x
+    )
     assert f"{entry['value']:.5g}" in line and f"{entry['low']:.5g}" in line
     table = summary(open_result("one.nc"))
     assert table.loc["y", "geometric mean"] == pytest.approx(entry["value"])

@@ -157,7 +157,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         _assumptions(result, causes),
         causes,
         "" if ranking is None else ranking.kind,
-        "" if ranking is None else _share_of(ranking),
+        "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
         no_causes,
         tuple(_checks(answer, plural, no_causes)),
@@ -171,12 +171,14 @@ def _subject(findings: Findings, answer: Answer) -> str:
     return "" if answer.lead is None else capitalized(answer.lead.words)
 
 
-def _share_of(ranking: Ranking) -> str:
+def _share_of(ranking: Ranking, is_life: bool) -> str:
     if not any(entry.share_of_variance for entry in ranking.contributions):
         return ""
     if ranking.of_event:
         return ranking.target.replace("regime=", "")
-    return "log life" if "logarithm" in ranking.share_of else "variance"
+    if "logarithm" in ranking.share_of:
+        return "log life" if is_life else "logarithm"
+    return "variance"
 
 
 def _assumptions(result: Result, causes: Sequence[Cause]) -> str:
@@ -187,7 +189,7 @@ def _assumptions(result: Result, causes: Sequence[Cause]) -> str:
     leading = [name for cause in causes[:1] for name in cause.contribution.sure]
     among = called_together([name for name in leading if name in assumed])
     text = f"{len(assumed)} of {counted(len(laws), 'law')} assumed"
-    return f"{text}, {among} among them" if among and len(assumed) > 1 else text
+    return f"{text}, {among} among them" if among and 1 < len(assumed) < len(laws) else text
 
 
 def _ranking(answer: Answer) -> Ranking | None:
@@ -250,8 +252,8 @@ def _moved(lead: Quantity | None, error: Any) -> str:
         return ""
     for name, bound, towards in (("lower", promise.lower, -inf), ("upper", promise.upper, inf)):
         if isfinite(bound) and error[name] is not None:
-            moved = promise.unit.number(error[name], towards)
-            return f" (bound then {moved})" * (moved != promise.unit.number(bound, towards))
+            moved = promise.unit.text(error[name], towards)
+            return f" (bound then {moved})" * (moved != promise.unit.text(bound, towards))
     return ""
 
 

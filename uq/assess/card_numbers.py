@@ -99,12 +99,14 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
     covered, confidence = 100 * promise.coverage, 100 * promise.confidence
     name = f"{covered:g}/{confidence:g} {'life' if quantity.is_life else 'bound'}"
     bounds = {"lower": (promise.lower, -inf), "upper": (promise.upper, inf)}
+    both = isfinite(promise.lower) and isfinite(promise.upper)
     for side, (bound, towards) in bounds.items():
         if isfinite(bound):
+            label = name.replace(" ", f" {side} ") if both else name
             does = _does(promise, side)
             note = f"{covered:g} % {does}; {confidence:g} % confidence (sampling)"
             estimate, leads = Estimate(bound), quantity.is_life or not quantity.events
-            yield Headline(key(side), name, estimate, unit, promise.unit, towards, note, leads)
+            yield Headline(key(side), label, estimate, unit, promise.unit, towards, note, leads)
     if isfinite(promise.lower) or isfinite(promise.upper):
         return
     quantiles = zip(promise.probabilities, promise.quantiles, bounds, strict=True)

@@ -14,7 +14,7 @@ from uq.assess.card import Card, Cause, card_of, statistic_name
 from uq.assess.card_numbers import Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
-from uq.text.numbers import grouped, percent, percent_interval, printed
+from uq.text.numbers import TO_THESE_DIGITS, grouped, percent, percent_interval, printed
 from uq.text.units import beside
 
 WIDTH = 80
@@ -22,7 +22,9 @@ SHORT = 12
 """A card with no more lines has no blank ones and no headers of columns."""
 
 _COMMANDS = "--explain  --full  --json"
+_POINTS = "percentage points"
 _BRIEF = {"seconds": "s", "minutes": "min", "hours": "h"}
+_MOST = 24  # lines
 _LAW = 22  # characters of a halved scatter with its unit
 _LONG = 5  # characters of a unit that stands in the header alone
 
@@ -140,7 +142,10 @@ def _title(card: Card) -> Line:
 
 def _with_commands(lines: list[Line]) -> list[Line]:
     last = lines[-1]
-    return [*lines[:-1], last._replace(text=_beside(last.text, _COMMANDS))]
+    with_commands = _beside(last.text, _COMMANDS)
+    if with_commands == last.text and SHORT < len(lines) < _MOST:
+        return [*lines, Line(f"{_COMMANDS:>{WIDTH}}")]
+    return [*lines[:-1], last._replace(text=with_commands)]
 
 
 def _beside(left: str, right: str) -> str:
@@ -169,9 +174,9 @@ def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
 
 def _widths(card: Card) -> tuple[int, int]:
     """Return the widths of labels and of values."""
-    labels = (len(label_of(line, card)) for line in card.headline)
-    values = (len(number_of(line)) for line in card.headline if not isnan(line.estimate.value))
-    return max(17, *labels) + 2, max(10, *values)
+    labels = [len(label_of(line, card)) for line in card.headline]
+    values = [len(number_of(line)) for line in card.headline if not isnan(line.estimate.value)]
+    return max([17, *labels]) + 2, max([10, *values])
 
 
 def label_of(line: Headline, card: Card) -> str:
@@ -199,7 +204,7 @@ def interval_of(line: Headline) -> str:
     if unit is None:
         return percent_interval(low, high)
     _, low_text, high_text = _same_decimals(*map(unit.number, line.estimate.numbers))
-    return f"{low_text} to {high_text}"
+    return TO_THESE_DIGITS if low_text == high_text else f"{low_text} to {high_text}"
 
 
 def _brief(unit: DisplayUnit) -> DisplayUnit:
@@ -261,7 +266,7 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     if tolerances:
         first = tolerances[0]
         name, now = printed(statistic_name(first)), printed(_value(first, first.before.value))
-        header[3] = (f"{name}, scatter", f"halved (now {now})") if step else (name, f"(now {now})")
+        header[3] = (f"{name}, half scatter" if step else name, f"(now {now})")
     rows = [
         [
             called_together(cause.contribution.inputs).removeprefix("both "),
@@ -305,7 +310,7 @@ def _effect(cause: Cause) -> str:
     sign = "+" if effect.direction > 0 else "-"
     if not effect.step or not effect.by.has_interval:
         return sign
-    return printed(f"{sign}{effect.unit.text(abs(effect.by.value))}")
+    return printed(f"{sign}{effect.unit.text(abs(effect.by.value))}").replace(_POINTS, "points")
 
 
 def _value(tolerance: TighterTolerance, value: float) -> str:
@@ -354,8 +359,16 @@ def _labelled(label: str, clauses: Sequence[str]) -> list[Line]:
 
 
 def _same_decimals(*numbers: str) -> list[str]:
-    """Return numbers with as many decimals as that which has most; as given if one has a power."""
+    """Return numbers with as many decimals as that which has most, but no more than three digits.
+
+    As given if one is written with a power of ten.
+    """
     if not all(re.fullmatch(r"-?\d+(\.\d+)?", number) for number in numbers):
         return [*numbers]
     most = max(len(number.partition(".")[2]) for number in numbers)
-    return [f"{float(number):.{most}f}" for number in numbers]
+    padded = [f"{float(number):.{most}f}" for number in numbers]
+    digits = [len(number.lstrip("-").replace(".", "").lstrip("0")) for number in padded]
+    return [
+        long if count <= 3 else number
+        for long, count, number in zip(padded, digits, numbers, strict=True)
+    ]

@@ -60,7 +60,7 @@ def test_independent_rows_still_bound_it_from_one_side():
 def test_every_reader_says_how_many_rows_it_takes(uq, folder):
     ds = lives(64)
     write(ds, Path("life.nc").absolute())
-    out = uq("summary", "life.nc").out
+    out = uq("summary", "life.nc", "--explain", "--full").out
     assert "needs 999 rows" in out and "needs 99 rows" in out
     assert np.isnan(summary(ds).loc["life", "B1"])
     cells = dict(

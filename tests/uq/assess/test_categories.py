@@ -79,7 +79,7 @@ def test_each_number_has_a_key():
 def test_tables_report_and_figures_show_shares(uq, folder):
     ds, codes = with_period()
     write_result(ds, folder / "out.nc")
-    shown = uq("summary", "out.nc").out
+    shown = uq("summary", "out.nc", "--explain", "--full").out
     lines = [line.split() for line in shown[shown.index("\nperiod") :].splitlines()]
     assert lines[1] == ["period", "period", "of", "the", "response"]
     assert ["1", f"{(codes == 1).mean():.5g}"] in [line[:2] for line in lines]
@@ -152,7 +152,7 @@ def test_a_category_with_dimensions_has_shares_of_each_element(uq, folder):
     with pytest.raises(InputError, match=r"no such element 'period\[site=up\]'"):
         sensitivities(ds, "regional", "period[site=up]")
     write_result(ds, folder / "out.nc")
-    assert "\nperiod[site=right]" in uq("summary", "out.nc").out
+    assert "\nperiod[site=right]" in uq("summary", "out.nc", "--explain", "--full").out
     write_report(folder / "out.nc", folder / "out.html")
     page = (folder / "out.html").read_text()
     assert page.count("<caption>Period") == 2

@@ -125,7 +125,7 @@ def test_a_variance_that_does_not_exist_is_not_apportioned(design, method):
 def test_the_terminal_and_the_report_give_the_reason(uq, folder):
     ds = heavy(0.8)
     write(ds, Path("z.nc").absolute())
-    out = " ".join(uq("summary", "z.nc").out.split())
+    out = " ".join(uq("summary", "z.nc", "--explain", "--full").out.split())
     assert "with k above 1 there is no mean; use quantiles" in out
     table = next(result_tables(outcomes(Result(ds), summarise(Result(ds)))))
     cells = dict(zip(table.header, table.rows[0], strict=True))

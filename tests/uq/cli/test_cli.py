@@ -63,18 +63,18 @@ def test_the_schema_is_json(uq):
     assert {"study", "design", "uncertain", "analysis"} <= set(schema["properties"])
 
 
-def test_run_ends_with_the_summary_and_what_to_type_next(uq, write_study, folder):
+def test_run_ends_with_the_card(uq, write_study, folder):
     path = write_study(samples=300)
     first = uq("run", path)
     assert (first.code, first.err) == (0, "")
     assert "results/small.nc: 300 rows computed in" in first.out
-    assert "uq sensitivity results/small.nc" in first.out
+    assert "uq report results/small.nc --open" in first.out
     shown = uq("summary", "results/small.nc").out
-    assert shown in first.out
+    assert first.out.endswith(f"\n\n{shown}")
     again = uq("run", path)
     assert again.code == 0
     assert "already complete" in again.out
-    assert shown in again.out
+    assert again.out.endswith(f"\n\n{shown}")
     assert everything(folder) == ["results", "results/small.nc", "small.toml"]
 
 
@@ -122,7 +122,7 @@ def test_lives_fits_and_regimes_are_shown(uq, folder):
         "fits" in strict_json(uq("summary", "life.nc", "--fits", "--json").out)["outputs"]["life"]
     )
     kinds(samples=200).to_netcdf("kinds.nc")
-    assert "variance between regimes" in uq("summary", "kinds.nc").out
+    assert "variance between regimes" in uq("summary", "kinds.nc", "--explain", "--full").out
     fast = strict_json(uq("summary", "kinds.nc", "--regime", "fast", "--json").out)
     assert fast["regime"]["slow"]["count"] == 0 < fast["regime"]["fast"]["count"]
     regional = uq("sensitivity", "kinds.nc", "--method", "regional", "--output", "regime")

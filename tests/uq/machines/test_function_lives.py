@@ -105,7 +105,7 @@ thresholds = {life = 4.0}
 def test_what_only_scales_a_life_is_integrated(uq, write_function):
     file = write_function(SCALED, SCALES_STUDY)
     uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet")
-    assert "load integrated exactly, worth" in uq("summary", "own.nc").out
+    assert "load integrated exactly, worth" in uq("summary", "own.nc", "--explain", "--full").out
     ds = package.open_result("own.nc")
     by = summarised(ds)["outputs"]["life"]["thresholds"]["4.0"]["below"]["value"]
     hard = ds["hard"].values

@@ -103,7 +103,7 @@ def test_every_reader_tells_how_intermingled_the_regimes_are(uq, tmp_path):
     document = loads(uq("summary", str(path), "--json").out)["boundary"]["uncertainty_exponent"]
     assert (document["value"], document["low"], document["high"]) == exponent.estimate.numbers
     assert "reason" not in document
-    shown = " ".join(uq("summary", str(path)).out.split())
+    shown = " ".join(uq("summary", str(path), "--explain", "--full").out.split())
     assert f"uncertainty exponent {exponent.words()} (" in shown
     assert "fewer outcomes are uncertain (50 % where" in shown
     table = api.regimes(ds)

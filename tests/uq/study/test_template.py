@@ -20,7 +20,12 @@ def test_a_template_is_a_study(name):
     study = study_from_text(template(model))
     assert study.model == model.given(model.settings())
     assert study.settings == model.settings()
-    assert 1 <= len(study.uncertain) <= 3
+    if model.uncertain:  # as declared, each with its source
+        assert list(study.uncertain) == list(model.uncertain)
+        assert all(law.source for law in study.uncertain.values())
+        assert study.analysis.outputs == model.headline
+    else:
+        assert 1 <= len(study.uncertain) <= 3
     x = row_block(study, 0, 100).x
     varying = [name in study.uncertain for name in model.parameter_names]
     np.testing.assert_array_equal((x != x[0]).any(axis=0), varying)

@@ -149,7 +149,7 @@ def test_the_unit_of_the_study_is_that_of_tables_and_json_stays_plain(uq, folder
     ds = with_output(linear(samples=64), "life", 3600.0 * np.linspace(5, 15, 64), "lifetime")
     ds = asking(ds, outputs=["life"], thresholds={"life": "600 minutes"})
     write_result(ds, folder / "out.nc")
-    shown = uq("summary", "out.nc").out
+    shown = uq("summary", "out.nc", "--explain", "--full").out
     assert "P(< 600 minutes)" in shown and "end within 600 minutes" in shown
     assert list(
         json.loads(uq("summary", "out.nc", "--json").out)["outputs"]["life"]["thresholds"]

@@ -1,4 +1,4 @@
-"""The card of a result on a page: its numbers as tiles, and its causes as a table with bars."""
+"""The card of a result on a page: tiles of its numbers, and a table of its causes."""
 
 from collections.abc import Iterator
 from math import isnan
@@ -110,7 +110,7 @@ def _place(answer: Answer) -> tuple[str, ...]:
 def _cells(
     cause: Cause, texts: list[str], place: tuple[str, ...], has_effects: bool
 ) -> Iterator[Cell]:
-    """Yield the cells of a cause: inputs, share as a bar, effect, and a number with less scatter."""
+    """Yield the cells of a cause: inputs, share as a bar, effect, number with less scatter."""
     contribution, first = cause.contribution, cause.contribution.indices[0]
     keys = (key_of(*place, "inputs", name, verb="answer") for name in contribution.inputs)
     interval = contribution.size_of(first).partition(" (")[2].removesuffix(")")

@@ -1,0 +1,139 @@
+"""The card: the answer of a study on one screen of 80 columns."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from computed import asking, computed, kinds, linear, study_of, with_output, with_status
+
+import uq as api
+from benchmarks.cards import cards_on_page
+from uq.render.card import SHORT, WIDTH, card, lines_of
+from uq.result.result import Result
+
+STUDIES = Path(__file__).parents[3] / "studies"
+QUICK = ("exponential-wear", "ishigami")
+
+
+@pytest.fixture(scope="module", params=QUICK)
+def shipped(request, tmp_path_factory):
+    path = tmp_path_factory.mktemp("cards") / f"{request.param}.nc"
+    api.run(STUDIES / f"{request.param}.toml", path, workers=0)
+    return path
+
+
+def test_every_shipped_study_has_a_card_on_the_page():
+    assert set(cards_on_page()) == {path.stem for path in STUDIES.glob("*.toml")}
+    for text in cards_on_page().values():
+        lines = text.splitlines()
+        assert len(lines) <= 24 and max(map(len, lines)) <= WIDTH
+    assert len(cards_on_page()["exponential-wear"].splitlines()) <= SHORT
+
+
+def test_the_card_of_a_quick_study_is_that_of_the_page(shipped):
+    assert str(card(shipped)) == cards_on_page()[shipped.stem]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(path.stem for path in STUDIES.glob("*.toml")))
+def test_the_card_of_a_shipped_study_is_that_of_the_page(name, tmp_path):
+    result = api.run(STUDIES / f"{name}.toml", tmp_path / f"{name}.nc")
+    assert str(card(result)) == cards_on_page()[name]
+
+
+def test_every_number_of_a_card_is_traced_to_the_same_number(shipped):
+    for line in card(shipped).card.headline:
+        number = api.trace(shipped, line.key)["value"]
+        value, low = line.estimate.value, line.estimate.low
+        assert number == (low if np.isnan(value) else value), line.key
+
+
+def test_terminal_json_and_python_show_one_card(uq, shipped):
+    text = str(card(shipped))
+    assert uq("summary", str(shipped)).out == text + "\n"
+    numbers = json.loads(uq("summary", str(shipped), "--json").out)
+    assert numbers["card"] == json.loads(json.dumps(card(shipped).card.json))
+    for line in numbers["card"]["headline"]:
+        assert set(line) == {"key", "label", "value", "low", "high", "unit"}
+    for cause in numbers["card"]["causes"]:
+        assert {"input", "share", "low", "high", "of", "effect", "tightened"} == set(cause)
+
+
+def test_sentences_and_tables_are_asked_for(uq, shipped):
+    sentences = uq("summary", str(shipped), "--explain").out
+    assert "contributes most" in sentences or "contribute most" in sentences
+    assert "quantile 0.5" not in sentences
+    assert "quantile 0.5" in uq("summary", str(shipped), "--full").out
+
+
+def life(values, **asked):
+    ds = linear(samples=len(values))
+    censored = np.isinf(values) & False
+    ds = with_output(ds, "life", values, kind="lifetime", censored=censored)
+    return asking(ds, outputs=["life"], **asked)
+
+
+def hard_cases():
+    rng = np.random.default_rng(3)
+    yield "few rows", asking(linear(samples=4), outputs=["y"])
+    yield "constant", asking(with_output(linear(), "level", np.ones(64)), outputs=["level"])
+    yield "failed", asking(with_status(linear(samples=200), slice(0, 60), 4), outputs=["y"])
+    yield "all failed", asking(with_status(linear(), slice(0, 64), 4), outputs=["y"])
+    yield "kinds", kinds(samples=256)
+    never = np.where(rng.random(400) < 0.3, np.inf, rng.lognormal(10, 2, 400))
+    yield "never", life(never, tolerance={"coverage": 0.95, "confidence": 0.95})
+    yield "huge", life(rng.lognormal(200, 30, 300), thresholds={"life": 1e80})
+    yield (
+        "tiny",
+        asking(
+            with_output(linear(samples=300), "level", 1e-280 * rng.random(300)),
+            outputs=["level"],
+            thresholds={"level": [1e-281, 5e-281, 9e-281]},
+        ),
+    )
+    yield "replicates", linear("sobol", samples=64, replicates=8)
+    yield "indices", linear("saltelli", samples=64, replicates=4)
+    yield "trajectories", linear("morris", samples=32)
+
+
+@pytest.mark.parametrize(("name", "ds"), [*hard_cases()], ids=lambda value: str(value)[:12])
+def test_a_card_fits_on_a_screen_whatever_the_result(name, ds):
+    shown = card(ds)
+    lines = str(shown).splitlines()
+    assert len(lines) <= 24 and max(map(len, lines)) <= WIDTH, name
+    assert f"{int(Result(ds).failed.sum())} failed" in lines[0]
+    assert not re.search(r"\bnan\b|\binf\b|None", str(shown)), str(shown)
+    json.dumps(shown.card.json, allow_nan=False)
+
+
+def test_what_counts_is_bold_and_a_warning_stands_out(shipped):
+    lines = lines_of(card(shipped).card)
+    main = [line for line in lines if line.bold != (0, 0)]
+    assert main[0].text.startswith(shipped.stem)
+    values = {line.text[slice(*line.bold)].split()[0] for line in main}
+    assert values & {"4.84", "3.7"}
+    warned = [line.text for line in lines if line.warns]
+    assert bool(warned) == (shipped.stem == "exponential-wear")
+    assert all("not a prediction" in text for text in warned[:1])
+
+
+def test_a_notebook_shows_the_card(shipped):
+    html = card(shipped)._repr_html_()
+    assert html.startswith("<pre>") and "<b>" in html
+    assert re.sub("<[^>]*>", "", html).replace("&lt;", "<").replace("&gt;", ">") == str(
+        card(shipped)
+    )
+
+
+def test_rows_are_called_what_the_model_calls_them():
+    tables = {
+        "study": {"name": "pumps", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 1},
+        "uncertain": {"x1": {"distribution": "uniform", "lower": 0.0, "upper": 1.0}},
+    }
+    ds = computed(study_of(tables))
+    assert str(card(ds)).splitlines()[0].startswith("pumps   1 run, 0 failed")
+    named = card(ds.assign_attrs(row_name="pump pumps"))
+    assert "1 pump, 0 failed" in str(named)
