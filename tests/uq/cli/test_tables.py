@@ -15,7 +15,8 @@ def printed(uq, folder):
 
     def printed(verb, ds):
         write_result(ds, folder / "out.nc")
-        ended = uq(verb, "out.nc")
+        options = ["--full"] if verb == "summary" else []
+        ended = uq(verb, "out.nc", *options)
         assert (ended.code, ended.err) == (0, "")
         return [line.split("  ") for line in map(str.strip, ended.out.splitlines())]
 

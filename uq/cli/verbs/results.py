@@ -108,7 +108,7 @@ def summary(
     full: given.Full = False,
     json: given.Json = False,
 ) -> None:
-    """Show the answer on a card: numbers, causes, checks and next steps."""
+    """Show the answer on a card, in sentences or in tables."""
     from uq.assess.answer.answer import conclude
     from uq.assess.card import card_of
     from uq.assess.findings import Findings
