@@ -19,7 +19,7 @@ from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.errors import InputError
 from uq.files.whole_files import check_target, whole
-from uq.render.html.answer import STYLE, fragment, regimes
+from uq.render.html.answer import STYLE, fragment, regimes, warning
 from uq.render.html.convergence import convergence_of
 from uq.render.html.embedded_rows import rows_inside, why_no_rows
 from uq.render.html.first_screen import first_screen
@@ -89,6 +89,7 @@ def templates() -> Any:
         "printed": _printed,
         "capitalized": capitalized,
         "quoted": shlex.quote,
+        "warning": warning,
     }
     return environment
 
