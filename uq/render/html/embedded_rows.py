@@ -297,7 +297,7 @@ def _note(elements: Sequence[Element]) -> str:
         return words
     names = " and ".join(map(called, integrated))
     return (
-        f"Chosen rows are counted, without intervals; each is one life, as computed, as in tolerance"
-        f" bounds. Where no row is chosen, probabilities of a life are those of the answer, which"
+        "Chosen rows are counted, without intervals; each is one life, as computed, as in tolerance"
+        " bounds. Where no row is chosen, probabilities of a life are those of the answer, which"
         f" integrate {names} exactly."
     )

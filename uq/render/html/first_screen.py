@@ -1,4 +1,4 @@
-"""The card of a result on a page: tiles of its numbers, and a table of its causes."""
+"""The card of a result on a page: tiles of its numbers, a table of its causes."""
 
 from collections.abc import Iterator
 from math import isnan

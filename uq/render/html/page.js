@@ -1,7 +1,6 @@
 "use strict";
 // Tables sort by a click on a heading, again for the other way round, and are saved as CSV. Without script they stay.
-const plainText = text => text.normalize("NFKC").replaceAll("\u2212", "-").replace(/ \u00d7 10(?=-?\d)/g, "e")
-  .replace(/(\d) (?=\d{3}\b)/g, "$1").trim();
+const plainText = text => text.normalize("NFKC").replaceAll("\u2212", "-").replace(/ \u00d7 10(?=-?\d)/g, "e").trim();
 const quoted = text => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 // What the cells of a table show; small print is a column of its own.
 function csvOf(table) {

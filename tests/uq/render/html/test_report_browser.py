@@ -197,7 +197,9 @@ def test_bars_of_indices_start_and_end_alike_whatever_the_sign_of_the_number(bro
 def test_captions_of_wide_tables_stay_in_sight_on_a_phone(browser, report):
     browser.open(report, width=400)
     browser.value(UNFOLD)
-    wide = "[...document.querySelectorAll('main section .wide')].filter(one => one.closest('.subject') === null)"
+    wide = (
+        "[...document.querySelectorAll('main section .wide')].filter(w => !w.closest('.subject'))"
+    )
     browser.value(f"{wide}.forEach(one => one.scrollLeft = 1e4)")
     ends = "(b => [b.left, b.right])(one.querySelector('caption').getBoundingClientRect())"
     scrolled = f"{wide}.filter(one => one.scrollLeft > 50).map(one => {ends})"

@@ -31,8 +31,8 @@ class Chosen {
       const isEstimated = event.counted && event.key in estimates;
       const cells = isEstimated ? [estimatedCell(estimates[event.key])]
         : masks.map(mask => countedCell(event, mask, (hits, all) => `${grouped(hits)} of ${grouped(all)}`));
-      const words = event.words + (isEstimated ? "" : event.counted);
-      return make("tr", {"data-key": event.key}, make("th", {scope: "row", style: `--dot: ${event.colour}`}, words), ...cells);
+      const words = [event.words, isEstimated ? "" : event.counted], style = `--dot: ${event.colour}`;
+      return make("tr", {"data-key": event.key}, make("th", {scope: "row", style}, ...words), ...cells);
     });
   }
 

@@ -49,7 +49,7 @@ function make(tag, attributes = {}, ...contents) {
 
 // Fill a table: heads of its columns, and its lines.
 function fill(table, heads, lines) {
-  const head = make("tr", {}, ...heads.map(text => make("th", {scope: "col"}, text)));
+  const head = make("tr", {}, ...heads.map(text => text ? make("th", {scope: "col"}, text) : make("td")));
   table.replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines));
 }
 
