@@ -18,6 +18,7 @@ from uq.assess.answer.wording import (
     CHOSEN,
     called_together,
     mark_of,
+    scale_warning,
 )
 from uq.assess.card_numbers import Headline, headlines
 from uq.assess.findings import Findings
@@ -114,11 +115,7 @@ class Card:
     @property
     def warning(self) -> str:
         """Clause on assumed inputs that set the scale of every life; "" without any."""
-        if not self.assumed:
-            return ""
-        is_single = len(self.assumed) == 1
-        how = "sets the scale and is assumed" if is_single else "set the scale and are assumed"
-        return f"not a prediction: {called_together(self.assumed)} {how}"
+        return scale_warning(self.assumed)
 
     @property
     def json(self) -> dict[str, Any]:

@@ -157,12 +157,12 @@ def _beside(left: str, right: str) -> str:
 def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
     wide_label, wide_value = _widths(card)
     for line in lines:
-        label, value = _label(line, card), _shown(line)
+        label, value = label_of(line, card), number_of(line)
         if isnan(line.estimate.value):
             yield Line(f"  {label:<{wide_label}}{'':<{wide_value // 4}}{value}")
             continue
         start = f"  {label:<{wide_label}}{value:>{wide_value}}"
-        text = f"{start}    {printed(line.note or _interval(line))}".rstrip()
+        text = f"{start}    {printed(line.note or interval_of(line))}".rstrip()
         place = (len(start) - len(value), len(start)) if line.leads else (0, 0)
         if len(text) <= WIDTH:
             yield Line(text, place)
@@ -174,17 +174,18 @@ def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
 
 def _widths(card: Card) -> tuple[int, int]:
     """Return the widths of labels and of values."""
-    labels = [len(_label(line, card)) for line in card.headline]
-    values = [len(_shown(line)) for line in card.headline if not isnan(line.estimate.value)]
+    labels = [len(label_of(line, card)) for line in card.headline]
+    values = [len(number_of(line)) for line in card.headline if not isnan(line.estimate.value)]
     return max([17, *labels]) + 2, max([10, *values])
 
 
-def _label(line: Headline, card: Card) -> str:
+def label_of(line: Headline, card: Card) -> str:
+    """Return the label of a number as it is shown."""
     is_range = isnan(line.estimate.value)
     return printed(f"90 % of {card.row_name[1]}" if is_range else line.label)
 
 
-def _shown(line: Headline) -> str:
+def number_of(line: Headline) -> str:
     """Return the number with its unit; of a range, both ends."""
     estimate = line.estimate
     if line.shown is None:
@@ -195,7 +196,8 @@ def _shown(line: Headline) -> str:
     return printed(unit.text(estimate.value, line.towards))
 
 
-def _interval(line: Headline) -> str:
+def interval_of(line: Headline) -> str:
+    """Return the interval of a number without its unit; "" without one."""
     unit, low, high = line.shown, line.estimate.low, line.estimate.high
     if not line.estimate.has_interval:
         return ""
@@ -223,7 +225,7 @@ def _causes(card: Card, *, is_short: bool) -> Iterator[Line]:
         yield from _labelled("CAUSES", (reason,))
     if not card.causes:
         return
-    header, rows = _cause_columns(card)
+    header, rows = cause_columns(card)
     filled = [i for i, column in enumerate(zip(*rows, strict=True)) if any(column)]
     header = [header[i] for i in filled]
     rows = [[row[i] for i in filled] for row in rows]
@@ -247,7 +249,7 @@ def _causes(card: Card, *, is_short: bool) -> Iterator[Line]:
             yield Line(f"  {line}"[:WIDTH], (2, 8) if cells is lines[0] else (0, 0))
 
 
-def _cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
+def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     """Return two lines of header, by column, and the cells of each cause."""
     steps = {cause.effect.step for cause in card.causes if cause.effect is not None}
     step = steps.pop() if len(steps) == 1 else ""

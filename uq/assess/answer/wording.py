@@ -145,6 +145,14 @@ def called_together(names: Sequence[str]) -> str:
     return joined(words)
 
 
+def scale_warning(assumed: Sequence[str]) -> str:
+    """Return the clause on assumed inputs that set the scale of a life; "" without any."""
+    if not assumed:
+        return ""
+    how = "sets the scale and is assumed" if len(assumed) == 1 else "set the scale and are assumed"
+    return f"not a prediction: {called_together(assumed)} {how}"
+
+
 def joined(words: Sequence[str], last: str = "and") -> str:
     """Return words as a list: ``a, b and c``; "" without any."""
     return f" {last} ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))

@@ -7,7 +7,8 @@ Reading order; each part imports only those above it:
     embedded_columns  columns of numbers inside a page: their names, axes and bytes
     moved_laws        arguments of a law with another scatter or another middle
     indices           sensitivities in a report: one table for each target of each method
-    answer            the answer as HTML, for a notebook and for the head of a report
+    answer            the answer as HTML, for a notebook, a dossier and a report
+    first_screen      the card of a result on a page: tiles of its numbers, a table of its causes
     inputs            the inputs in a report: laws, sources, and the quality of each number
     tolerances        other tolerances
     levels            samples of several rows in a report

@@ -8,7 +8,7 @@ from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution, whole_percent
 from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.quantities import Quantity
-from uq.assess.answer.wording import called, sentence, share_text
+from uq.assess.answer.wording import called, scale_warning, sentence, share_text
 from uq.errors import choices
 from uq.render.html import cells
 from uq.render.html.keyed_sentences import below, folded, items, joined, keyed, shown, with_keys
@@ -18,15 +18,12 @@ from uq.text.numbers import capitalized
 _STYLE = """
 .answer, .answer-words, .answer-side { display: grid; gap: .3rem 2rem;
   grid-template-columns: minmax(0, 1fr); align-items: start; align-content: start; }
-.answer figure { padding: 0; }
 @media screen and (min-width: 60rem) {
   .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr); line-height: 1.4; }
-  .answer figure svg { max-height: 24rem; } /* what to do stays on the first screen */
 }
 @media screen and (width < 60rem) { /* one column: what to do comes before what ends first */
   .answer-words, .answer-side { display: contents; }
   .answer-verdict { order: -3; }
-  .answer figure { order: -2; }
   .answer-ranking { order: -1; }
   .answer-first { order: 1; }
 }
@@ -34,7 +31,10 @@ _STYLE = """
 .answer ul { padding-left: 1.2rem; }
 .answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
 .answer .answer-promise { font-size: 1.35rem; line-height: 1.3; font-weight: 600; }
-.answer-why { opacity: .75; font-size: .875em; }
+.answer-why { opacity: .8; font-size: .875em; }
+.warning { max-width: 48rem; margin: .5rem 0; padding: .5rem .75rem; border-left: 4px solid #d55e00;
+  border-radius: 4px; background: rgba(213, 94, 0, .1); font-size: .875rem; font-weight: 600; }
+.warning span { color: #d55e00; font-weight: 800; margin-right: .25rem; }
 .answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) 8.5rem; gap: 0 .7rem;
   align-items: center; margin: .3rem 0; }
 .answer-bar .answer-why { grid-column: 1 / -1; }
@@ -43,7 +43,6 @@ _STYLE = """
   .answer { font-size: .875rem; line-height: 1.3; }
   .answer :is(p, ul, .answer-bar) { margin: .15rem 0; }
   .answer h3 { margin-top: .4rem; }
-  .answer figure svg { max-height: 22rem; }
   .answer .answer-promise { font-size: 1.2rem; }
 }
 @media (max-width: 40rem), print {
@@ -67,17 +66,10 @@ _MOST_ELEMENTS = 2  # besides the first; if there are more, only the last
 _MOST_NAMED = 3  # of inputs whose indices do not distinguish them
 
 
-def fragment(answer: Answer, picture: str = "") -> Markup:
-    """Return the answer as one element of a page.
-
-    Parameters
-    ----------
-    answer : Answer
-    picture : str, optional
-        HTML of the figure of the study's main quantity.
-    """
+def fragment(answer: Answer) -> Markup:
+    """Return the answer as one element of a page."""
     words = _block("words", [_verdict(answer), _ranking(answer), _first(answer)])
-    side = _block("side", [Markup(picture), _to_do(answer)])
+    side = _block("side", [_to_do(answer)])
     return Markup('<div class="answer">{}{}</div>').format(words, side)
 
 
@@ -204,8 +196,9 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
         first = (*place, "events", lead.first.name)
         verdict, cause = keyed(facts, *first, "share"), _cause(answer, *first)
     yield _line(verdict) if answer.regimes_first else _large(verdict)
+    yield warning(scale_warning(lead.scaled_by))
     yield _line(cause)
-    yield _small(lead.subject)
+    yield _small(sentence(lead.words))
     yield _small(joined(_basis(lead), keyed(facts, *place, "own_error")))
     yield _line(keyed(facts, *place, "range"))
     for event in lead.others:
@@ -304,6 +297,14 @@ def _advice(answer: Answer, key: str, advice: Advice) -> Markup:
 
 def _block(name: str, parts: list[Markup]) -> Markup:
     return Markup('<div class="answer-{}">{}</div>').format(name, Markup("").join(parts))
+
+
+def warning(clause: str) -> Markup:
+    """Return a warning that stands beside the numbers that it limits; "" without one."""
+    if not clause:
+        return Markup()
+    text = shown(sentence(clause))
+    return Markup('<p class="warning"><span aria-hidden="true">!</span> {}</p>').format(text)
 
 
 def _large(text: str) -> Markup:

@@ -297,6 +297,7 @@ def _note(elements: Sequence[Element]) -> str:
         return words
     names = " and ".join(map(called, integrated))
     return (
-        f"{words} Each row is one life, as computed, as in tolerance bounds; other numbers of the"
-        f" answer, the tables and other tolerances of one input integrate {names} exactly."
+        "Chosen rows are counted, without intervals; each is one life, as computed, as in tolerance"
+        " bounds. Where no row is chosen, probabilities of a life are those of the answer, which"
+        f" integrate {names} exactly."
     )

@@ -6,6 +6,7 @@ from math import isnan
 from typing import Any
 
 from uq.assess.answer.answer_sentences import Answer
+from uq.assess.answer.wording import scale_warning
 from uq.assess.findings import Findings
 from uq.assess.regimes import in_words
 from uq.assess.statistic import Listing, Reader, Statistic
@@ -235,8 +236,9 @@ def groups(
     Yields
     ------
     dict
-        Name and meaning of an output; ``sentences`` of the answer, without what the head of the
-        report says; ``tables``; ``words`` that explain the counts; ``pictures``; ``indices``.
+        Name and meaning of an output; ``sentences`` of the answer, without those on the subject
+        of the study; ``tables``; ``words`` that explain the counts; ``pictures``; ``indices``;
+        ``warning``, if assumed inputs set its scale.
     """
     result = findings.result
     shown = result.shown_outputs(result.analysis)
@@ -258,5 +260,15 @@ def groups(
             "indices": of_output(methods, name),
         }
         if any(contents.values()):
-            meaning = readable(str(result.dataset[name].attrs["long_name"]))
-            yield {"name": name, "meaning": meaning} | contents
+            about_it = {
+                "name": name,
+                "meaning": capitalized(readable(str(result.dataset[name].attrs["long_name"]))),
+                "warning": scale_warning(assumed_scales(answer, name)),
+            }
+            yield about_it | contents
+
+
+def assumed_scales(answer: Answer, output: str) -> tuple[str, ...]:
+    """Return the assumed inputs to which every life of an output is proportional."""
+    of_output = (quantity for quantity in answer.quantities if quantity.output == output)
+    return next((quantity.scaled_by for quantity in of_output), ())

@@ -14,13 +14,15 @@ from markupsafe import Markup, escape
 
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
+from uq.assess.card import card_of
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.errors import InputError
 from uq.files.whole_files import check_target, whole
-from uq.render.html.answer import STYLE, fragment, regimes
+from uq.render.html.answer import STYLE, fragment, regimes, warning
 from uq.render.html.convergence import convergence_of
 from uq.render.html.embedded_rows import rows_inside, why_no_rows
+from uq.render.html.first_screen import first_screen
 from uq.render.html.indices import of_output, sensitivity_of
 from uq.render.html.inputs import fixed_inputs, input_tables
 from uq.render.html.levels import fleet_notes, fleet_table, levels_of
@@ -87,6 +89,7 @@ def templates() -> Any:
         "printed": _printed,
         "capitalized": capitalized,
         "quoted": shlex.quote,
+        "warning": warning,
     }
     return environment
 
@@ -126,11 +129,11 @@ def inspections_csv(result: Result) -> str:
     return text.getvalue()
 
 
-_FIGURE = Markup("<figure{}>{}</figure>")  # the verdict is its caption
+_FIGURE = Markup("<figure{}>{}</figure>")  # the numbers beside it are its caption
 
 
-def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> Markup:
-    """Return the answer as HTML, and remove the figure that it shows from those drawn.
+def figure_of_subject(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> Markup:
+    """Return the figure of the subject of a study, and remove it from those drawn.
 
     Parameters
     ----------
@@ -139,6 +142,11 @@ def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> 
         The figures of the results.
     by_regime : list of Picture
         Figures of the rows by regime, used if the answer is about regimes.
+
+    Returns
+    -------
+    Markup
+        "" if there is none.
     """
     lead = answer.lead
     figures = [
@@ -147,11 +155,11 @@ def headline(answer: Answer, drawn: list[Picture], by_regime: list[Picture]) -> 
     if answer.regimes_first:
         figures = [*((by_regime, figure) for figure in by_regime), *figures]
     if not figures:
-        return fragment(answer)
+        return Markup()
     among, shown = figures[0]
     among.remove(shown)
-    kind = Markup(' class="image"') if shown.is_image else ""
-    return fragment(answer, _FIGURE.format(kind, shown.html))
+    kind = Markup(' class="image"') if shown.is_image else Markup()
+    return _FIGURE.format(kind, shown.html)
 
 
 def write_report(
@@ -206,20 +214,21 @@ def page(result: Result, name: str) -> str:
     methods = sensitivity_of(findings)
     drawn = list(pictures(findings, "results", without=findings.absent))
     by_regime = list(pictures(findings, "rows"))
-    headed = headline(answer, drawn, by_regime)
+    figure = figure_of_subject(answer, drawn, by_regime)
     lost = int(result.failed.sum())
     hashes = ("study_sha256", "study_identity")
     content = {
         "design": result.design,
         "summary": summary,
-        "answer": headed,
+        **first_screen(card_of(findings, answer), answer, figure),
+        "sentences": fragment(answer),
         "groups": list(groups(findings, answer, described, drawn, methods)),
         "regimes_answered": regimes(answer),
         "inputs": list(input_tables(result)),
         "inputs_fixed": fixed_inputs(result),
         "inputs_drawn": list(pictures(findings, "inputs")),
         "status": status_table(result, summary),
-        "failed": lost,
+        "failed_rows": lost,
         "regimes": regime_tables(findings),
         "rows_drawn": [*(figure for figure in drawn if figure.output == REGIME), *by_regime],
         "regime_indices": of_output(methods, REGIME),

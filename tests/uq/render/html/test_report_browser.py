@@ -14,6 +14,7 @@ from uq.render.html.page import page
 from uq.result.result import Result
 
 HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'
+UNFOLD = "document.querySelectorAll('details').forEach(fold => { fold.open = true })"
 ASKED = {"thresholds": {"life": 1.0}, "sensitivity": ["rbd-fast"]}
 
 
@@ -172,11 +173,11 @@ def test_the_answer_fits_the_first_screen_or_two_of_a_phone(
     browser, report, width, height, screens
 ):
     browser.open(report, width=width, height=height)
-    answer = "document.querySelector('.answer')"
-    bottom = browser.value(f"{answer}.getBoundingClientRect().bottom + scrollY")
+    screen = "document.querySelector('.first-screen')"
+    bottom = browser.value(f"{screen}.getBoundingClientRect().bottom + scrollY")
     assert bottom <= screens * height
-    for part in (".answer-promise", "svg", ".bar", ".answer-todo"):
-        assert browser.value(f"{answer}.querySelector('{part}') !== null"), part
+    for part in (".main-tile", "svg", ".bar", ".checks", ".checks ~ ul"):
+        assert browser.value(f"{screen}.querySelector('{part}') !== null"), part
 
 
 def test_bars_of_indices_start_and_end_alike_whatever_the_sign_of_the_number(browser, tmp_path):
@@ -195,7 +196,10 @@ def test_bars_of_indices_start_and_end_alike_whatever_the_sign_of_the_number(bro
 
 def test_captions_of_wide_tables_stay_in_sight_on_a_phone(browser, report):
     browser.open(report, width=400)
-    wide = "[...document.querySelectorAll('main > section > .wide')]"
+    browser.value(UNFOLD)
+    wide = (
+        "[...document.querySelectorAll('main section .wide')].filter(w => !w.closest('.subject'))"
+    )
     browser.value(f"{wide}.forEach(one => one.scrollLeft = 1e4)")
     ends = "(b => [b.left, b.right])(one.querySelector('caption').getBoundingClientRect())"
     scrolled = f"{wide}.filter(one => one.scrollLeft > 50).map(one => {ends})"

@@ -16,5 +16,5 @@ def test_a_tall_figure_leaves_room_for_what_to_do(browser, tmp_path):
     path = tmp_path / "tall.html"
     path.write_text(page(Result(asking(ds, outputs=["worn"])), "tall.nc"), encoding="utf-8")
     browser.open(path, width=1400, height=900)
-    height = "document.querySelector('.answer figure svg').getBoundingClientRect().height"
+    height = "document.querySelector('.first-screen figure svg').getBoundingClientRect().height"
     assert browser.value(height) <= 384

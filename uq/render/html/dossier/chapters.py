@@ -3,14 +3,17 @@
 from collections.abc import Iterator
 from math import isfinite
 
+from markupsafe import Markup
+
 from uq.assess.answer.answer import conclude, verdict
 from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.tolerance_bound import Range
+from uq.assess.answer.wording import scale_warning
 from uq.assess.findings import Findings
 from uq.assess.statistic import Reader
 from uq.assess.summary import REGIME
 from uq.indices.methods import METHODS
-from uq.render.html.answer import fragment
+from uq.render.html.answer import fragment, warning
 from uq.render.html.cells import Cell, HtmlTable
 from uq.render.html.convergence import convergence_of
 from uq.render.html.dossier.assessment import (
@@ -25,6 +28,7 @@ from uq.render.html.dossier.outline import DOCUMENTS, Heading, Item
 from uq.render.html.indices import of_output, sensitivity_of
 from uq.render.html.levels import fleet_notes, fleet_table, levels_of
 from uq.render.html.outcomes import (
+    assumed_scales,
     category_table,
     outcomes,
     regime_tables,
@@ -106,8 +110,11 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     """Yield the estimated uncertainty of the quantities of interest."""
     described = outcomes(findings.result, findings.summary)
     of_jcgm = _coverage_intervals(findings)
+    answer = conclude(findings)
+    scaled = dict.fromkeys(quantity.scaled_by for quantity in answer.quantities)
     yield Item(
         "Estimate, standard uncertainty and coverage interval",
+        html=Markup("").join(warning(scale_warning(names)) for names in scaled),
         tables=[of_jcgm] if of_jcgm.rows else [],
         notes=[
             "As JCGM 101, 5.5 requires: the intervals are probabilistically symmetric, from the 5"
@@ -118,6 +125,7 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     for name in dict.fromkeys(outcome.output for outcome in described):
         yield Item(
             f"Statistics of {name}",
+            html=warning(scale_warning(assumed_scales(answer, name))),
             tables=list(
                 result_tables([outcome for outcome in described if outcome.output == name])
             ),

@@ -41,9 +41,7 @@ class Axis {
     [this.from, this.to, this.sign] = [from + sign * MARGIN, to - sign * MARGIN, sign]; // whole points at the ends
   }
 
-  pixel(value) {
-    return this.from + this.scale.place(value) * (this.to - this.from);
-  }
+  pixel(value) { return this.from + this.scale.place(value) * (this.to - this.from); }
 
   // Points of a strip are spread over its width.
   pixelOf(row) {

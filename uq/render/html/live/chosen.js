@@ -24,10 +24,16 @@ class Chosen {
     this.element.querySelector(".status").replaceChildren(...(isAll ? [rows.extent] : chosen));
   }
 
+  // As long as no rows are chosen, a number that the answer integrates is that of the answer.
   lines(masks) {
-    return this.rows.events.map(event => make("tr", {"data-key": event.key},
-      make("th", {scope: "row", style: `--dot: ${event.colour}`}, event.words, event.counted),
-      ...masks.map(mask => countedCell(event, mask, (hits, all) => `${grouped(hits)} of ${grouped(all)}`))));
+    const estimates = this.selection.isAll ? this.rows.tolerances?.studied.events ?? {} : {};
+    return this.rows.events.map(event => {
+      const isEstimated = event.counted && event.key in estimates;
+      const cells = isEstimated ? [estimatedCell(estimates[event.key])]
+        : masks.map(mask => countedCell(event, mask, (hits, all) => `${grouped(hits)} of ${grouped(all)}`));
+      const words = [event.words, isEstimated ? "" : event.counted], style = `--dot: ${event.colour}`;
+      return make("tr", {"data-key": event.key}, make("th", {scope: "row", style}, ...words), ...cells);
+    });
   }
 
   extremes(masks) {

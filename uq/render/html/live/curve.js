@@ -20,8 +20,9 @@ function showCurves(figure, column, weighted, more) {
   const curves = weighted.map(([weights, name]) =>
     make("path", {d: pathOf(sharesAbove(column, scale, weights), x, y), class: `line ${name}`}));
   const title = `${column.curve}: ${column.title}`, attributes = {viewBox: `0 0 ${wide} ${HIGH}`, role: "img", "aria-label": title};
-  figure.replaceChildren(make("svg", attributes, ...grid, ...labels, ...thresholds, ...curves.reverse()),
-    make("figcaption", {}, `${title}${more}.`));
+  figure.replaceChildren(make("p", {class: "axis-title"}, column.curve), // of the vertical axis; below that of the horizontal one
+    make("svg", attributes, ...grid, ...labels, ...thresholds, ...curves.reverse()),
+    make("figcaption", {}, `${column.title[0].toUpperCase()}${column.title.slice(1)}${more}`));
 }
 
 function pathOf({at, share}, x, y) {

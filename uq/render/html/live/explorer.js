@@ -50,10 +50,7 @@ class Explorer {
     window.scrollBy(0, Math.max(0, Math.min(hidden, room)));
   }
 
-  close() {
-    this.card.replaceChildren();
-    this.scatter.close();
-  }
+  close() { this.card.replaceChildren(); this.scatter.close(); }
 
   arrange() {
     this.scatter.show(this.x, this.y);

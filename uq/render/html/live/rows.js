@@ -15,19 +15,13 @@ class Column {
   }
 
   // A value in the unit shown, without it.
-  digits(value, digits = 4) {
-    return number(value / this.per, digits + this.common);
-  }
+  digits(value, digits = 4) { return number(value / this.per, digits + this.common); }
 
   // The same with it, such as "12.3 kN".
-  words(value, digits = 4) {
-    return this.digits(value, digits) + this.after;
-  }
+  words(value, digits = 4) { return this.digits(value, digits) + this.after; }
 
   // Two values with it once, such as "1.2 to 12.3 kN".
-  between(low, high) {
-    return `${this.digits(low, 3)} to ${this.words(high, 3)}`;
-  }
+  between(low, high) { return `${this.digits(low, 3)} to ${this.words(high, 3)}`; }
 
   wordsOfRow(row) {
     const state = this.states[row], value = this.words(this.values[row], 6);

@@ -121,22 +121,14 @@ class Scatter {
     const {regime, numbers} = this.rows, columns = [this.columnX, this.columnY];
     const name = `Row ${numbers[row]}${regime ? `, ${regime.entries[regime.places[row]].label}` : ""}`;
     this.tip.textContent = [name, ...columns.map(column => `${column.label}: ${column.wordsOfRow(row)}`)].join("\n");
-    const isRight = this.px[row] > this.width / 2;
-    place(this.tip, {
-      left: isRight ? null : this.px[row] + 12,
-      right: isRight ? this.width - this.px[row] + 12 : null,
-      top: Math.max(0, Math.min(this.py[row] - 20, this.height - this.tip.offsetHeight)),
-    });
+    const isRight = this.px[row] > this.width / 2, top = Math.min(this.py[row] - 20, this.height - this.tip.offsetHeight);
+    const [left, right] = isRight ? [null, this.width - this.px[row] + 12] : [this.px[row] + 12, null];
+    place(this.tip, {left, right, top: Math.max(0, top)});
   }
 
-  open(row, byKey = false) {
-    if (row >= 0) this.pick(this.rows.numbers[row], byKey);
-  }
+  open(row, byKey = false) { if (row >= 0) this.pick(this.rows.numbers[row], byKey); }
 
-  mark(row) {
-    this.picked = row;
-    this.draw();
-  }
+  mark(row) { this.picked = row; this.draw(); }
 
   // Back to the row that was open.
   close() {

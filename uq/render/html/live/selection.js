@@ -13,9 +13,7 @@ class Selection {
     this.update();
   }
 
-  range(column) {
-    return this.ranges.get(column) ?? [-Infinity, Infinity];
-  }
+  range(column) { return this.ranges.get(column) ?? [-Infinity, Infinity]; }
 
   setRange(column, low, high) {
     if (low === -Infinity && high === Infinity) this.ranges.delete(column);

@@ -80,9 +80,7 @@ class Tolerances {
     return "Too few rows support all these changes together; the command states how many are required.";
   }
 
-  worth(weights) {
-    return worthOf(weights) * this.parts / this.rows.count;
-  }
+  worth(weights) { return worthOf(weights) * this.parts / this.rows.count; }
 
   quality(stops, weights) {
     if (stops.length < 2) return (stops[0] ?? this.studied).quality;

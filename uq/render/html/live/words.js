@@ -49,7 +49,7 @@ function make(tag, attributes = {}, ...contents) {
 
 // Fill a table: heads of its columns, and its lines.
 function fill(table, heads, lines) {
-  const head = make("tr", {}, ...heads.map(text => make("th", {scope: "col"}, text)));
+  const head = make("tr", {}, ...heads.map(text => text ? make("th", {scope: "col"}, text) : make("td")));
   table.replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines));
 }
 
@@ -67,16 +67,10 @@ function place(element, box) {
 // A button that copies a text, and the place where it says so.
 function copyButton(text) {
   const done = make("span", {role: "status"});
-  const copy = async () => {
-    try {
-      await navigator.clipboard.writeText(text());
-      done.textContent = "Copied";
-      setTimeout(() => { done.textContent = ""; }, 2000);
-    } catch {
-      done.textContent = "Select the command to copy it.";
-    }
-  };
-  return [make("button", {type: "button", "on:click": copy}, "Copy"), done];
+  const isCopied = () => { done.textContent = "Copied"; setTimeout(() => { done.textContent = ""; }, 2000); };
+  const isRefused = () => { done.textContent = "Select the command to copy it."; };
+  const copy = async () => navigator.clipboard.writeText(text());
+  return [make("button", {type: "button", "on:click": () => copy().then(isCopied, isRefused)}, "Copy"), done];
 }
 
 // Call a function once before the next picture, however often it is asked for.
