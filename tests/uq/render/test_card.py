@@ -135,5 +135,5 @@ def test_rows_are_called_what_the_model_calls_them():
     }
     ds = computed(study_of(tables))
     assert str(card(ds)).splitlines()[0].startswith("pumps   1 run, 0 failed")
-    named = card(ds.assign_attrs(row_name="pump pumps"))
+    named = card(ds.assign_attrs(row_name="pump/pumps"))
     assert "1 pump, 0 failed" in str(named)
