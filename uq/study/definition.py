@@ -292,10 +292,10 @@ def _read(path: Path) -> str:
         with path.open("rb") as file:
             content = file.read(_LONGEST + 1)
         if content.startswith(SIGNATURES):
-            file = shlex.quote(str(path))
+            named = shlex.quote(str(path))
             raise InputError(
-                f"{path}: is a netCDF file, not a study; of a result, 'uq summary {file}' shows the"
-                f" answer, and 'uq extend {file} --samples N' adds rows"
+                f"{path}: is a netCDF file, not a study; of a result, 'uq summary {named}' shows"
+                f" the answer, and 'uq extend {named} --samples N' adds rows"
             )
         if len(content) > _LONGEST:
             raise InputError(f"{path}: a study is at most {_LONGEST // 1_000_000} MB long")

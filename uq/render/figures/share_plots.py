@@ -113,7 +113,7 @@ def regime_shares(result: AnyResult, *, axes: Axes | None = None) -> Figure:
         When there are no regimes, no input varies, or there are too few rows.
     """
     result = Result.of(result)
-    result.refuse_weights("shares of regimes over inputs")
+    result.refuse_if_weighted("shares of regimes over inputs")
     rows = result.independent
     regimes, inputs = occurring_regimes(rows), independent_inputs(rows)
     if not regimes or not inputs:
