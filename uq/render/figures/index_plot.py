@@ -127,15 +127,15 @@ def index_bars(
     )
     form, *_ = split_name(name)
     unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect [unit of the output]"
-    single = len(kinds) == 1 and not shown.indices.nulls
-    of_kind = f": {next(iter(kinds)).words}" if single else ""
+    is_alone = len(kinds) == 1 and not shown.indices.nulls
+    of_kind = f": {next(iter(kinds)).words}" if is_alone else ""
     axis = f"Sensitivity index{of_kind}" if shares else unit
     rest = ""
     if others:
         most = max(abs(size(values[name])) for values in kinds.values() for name in others)
         rest = f"\n{counted(len(others), 'other input')}: at most {most:.2g}"
     panel.set_xlabel(axis + has_intervals * ",\nwith 95 % interval" + rest)
-    if single and shares:
+    if is_alone and shares:
         panel.containers[0].set_label("_")
     heading(panel, description)
     return finish(panel)
