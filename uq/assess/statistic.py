@@ -251,8 +251,8 @@ Maker = Callable[[Element, Context], Iterable[Statistic]]
 """Yields some statistics of an element."""
 
 
-class Ranks(NamedTuple):
-    """Ranks of the statistics of a maker in JSON and pandas; by default last, as in the table.
+class Placement(NamedTuple):
+    """Place of the statistics of a maker in JSON and pandas; by default last, as in the table.
 
     Attributes
     ----------
@@ -267,19 +267,19 @@ class Ranks(NamedTuple):
     absent: str = ""
 
 
-_PLACES: dict[Maker, Ranks] = {}
+_PLACES: dict[Maker, Placement] = {}
 
 
 def placed(json: float = inf, columns: float = inf, absent: str = "") -> Callable[[Maker], Maker]:
     """Give a maker its place in JSON and pandas; the outermost decorator."""
 
     def place(make: Maker) -> Maker:
-        _PLACES[make] = Ranks(json, columns, absent)
+        _PLACES[make] = Placement(json, columns, absent)
         return make
 
     return place
 
 
-def place_of(make: Maker) -> Ranks:
+def place_of(make: Maker) -> Placement:
     """Return the place of the statistics of a maker."""
-    return _PLACES.get(make, Ranks())
+    return _PLACES.get(make, Placement())
