@@ -45,6 +45,7 @@ from uq.render.figures.response_plot import curve as curve
 from uq.render.figures.scatter_plot import pairs as pairs
 from uq.render.figures.scatter_plot import scatter as scatter
 from uq.render.figures.share_plots import event_probability as event_probability
+from uq.render.figures.share_plots import regime_shares as regime_shares
 from uq.render.figures.share_plots import shares as shares
 from uq.result.result import Result
 
@@ -95,13 +96,21 @@ FIGURES: dict[str, Entry] = {
         needs=("running",),
         on_request=True,
     ),
+    "regime-shares": Entry(
+        regime_shares,
+        subjects.the_result,
+        "Shares of the regimes over the inputs that best separate them",
+        section="",
+        applies=(subjects.in_regimes, subjects.has_enough_rows, subjects.has_plain_rows),
+        leading=subjects.the_result_alone,
+    ),
     "pairs": Entry(
         pairs,
         subjects.the_result,
         "Rows by regime, against the inputs that best separate the regimes",
         section="rows",
         applies=(subjects.in_regimes, subjects.has_several_inputs, subjects.has_plain_rows),
-        leading=subjects.the_result_alone,
+        on_request=True,
     ),
     "indices": Entry(
         index_bars,
@@ -237,7 +246,9 @@ def _chosen(
     elif every:
         drawn = list(drawables(FIGURES | TABLES, findings))
     else:
-        groups = [[output] for output in outputs] or [subjects.leading_outputs(findings)]
+        groups: list[tuple[str, ...]] = [(output,) for output in outputs] or [
+            subjects.leading_outputs(findings)
+        ]
         leading = (leading_drawables(FIGURES, findings, group) for group in groups)
         return list(chain.from_iterable(leading))
     about = [drawable for drawable in drawn if not outputs or drawable.subject.output in outputs]

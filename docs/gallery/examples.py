@@ -103,8 +103,8 @@ EXAMPLES = (
         LIVES,
         "The share that has ended, against time",
         "The line is the estimate; the bands are the pointwise and the simultaneous 95 % interval."
-        " Points mark B1, B10 and B50, with their intervals, and a vertical line the time that the"
-        " study asks about.",
+        " Points mark B1, B10 and B50, with their intervals; labels above the frame name the bound"
+        " and the time that the study asks about. A life whose scale is assumed is no prediction.",
         'lifetime(ds, "first_time_to_depth")',
         "beam-lifetime",
     ),
@@ -121,7 +121,8 @@ EXAMPLES = (
         "histogram",
         LIVES,
         "The distribution of an output",
-        "Outputs other than lives. Lines mark the thresholds of the study.",
+        "Outputs other than lives, as a probability density: the area of a bar is the share of its"
+        " rows. Lines mark the thresholds of the study.",
         'histogram(ds, "disphasing_angle")',
         "vibrator-tolerances",
     ),
@@ -147,7 +148,8 @@ EXAMPLES = (
         "indices",
         INPUTS,
         "Sensitivity indices",
-        "How much of the variance each input explains by itself, and with its interactions.",
+        "How much of the variance each input explains by itself, and with its interactions. Inputs"
+        " with a negligible index are counted below.",
         f'index_bars(ds, "log({LIFE})", method="sobol")',
         "beam-sensitivity",
     ),
@@ -175,6 +177,14 @@ EXAMPLES = (
         " torque and inertia; once the motors have locked, either torque.",
         'index_curves(ds, "run_up_speed_1")',
         "vibrator-run-up",
+    ),
+    _of_result(
+        "regime-shares",
+        INPUTS,
+        "The share of each regime over the inputs that separate them",
+        "Slices of equally many rows: where a colour widens, the input decides the regime.",
+        "regime_shares(ds)",
+        "beam-lifetime",
     ),
     _of_result(
         "pairs",

@@ -276,7 +276,10 @@ def plot(
         bool, typer.Option("--title/--no-title", help="With titles, or without for a caption.")
     ] = True,
 ) -> None:
-    """Draw the figures of a result into a folder: by default those about its subject."""
+    """Draw the figures of a result into a folder.
+
+    By default those about the subject of its study.
+    """
     from uq.plots import save_all
     from uq.render.figures.figure import width_in_metres
     from uq.result.result import Result

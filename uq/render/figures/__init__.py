@@ -6,6 +6,7 @@ Reading order; each part imports only those above it:
     panel               panels of a new figure or within given axes
     words               words, units and symbols in figures and reports
     elements_plot       common parts of figures of elements
+    line_labels         labels beside the lines that they name, and the note on an assumed scale
     index_plot          figures of sensitivity indices
     motion_plot         figures of a machine's motion
     response_plot       figures of a machine's response

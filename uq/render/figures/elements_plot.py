@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from uq.render.figures.figure import COLOURS, LIMIT, LINES, SHADES, thinned
 from uq.render.figures.panel import is_wide
-from uq.render.figures.words import labelled, literal, rows_in_words
+from uq.render.figures.words import input_label, literal, rows_in_words, unbroken
 from uq.result.elements import Element, Floats, Mask, flags
 from uq.result.result import Result
 from uq.text.numbers import minus, printed, threshold
@@ -65,13 +65,18 @@ def display_unit(units: str, values: Floats) -> ReadableUnit:
 def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:
     """Label the horizontal axis with an input, and return the size of the axis unit."""
     unit = result.input_unit(name)
-    axes.set_xlabel(labelled(result.dataset[name], unit.name, width))
+    axes.set_xlabel(input_label(result.dataset[name], unit.name, width))
     return unit.size
 
 
 def mark_thresholds(
-    axes: Axes, result: Result, element: Element, unit: ReadableUnit, vertical: bool = False
-) -> None:
+    axes: Axes,
+    result: Result,
+    element: Element,
+    unit: ReadableUnit,
+    vertical: bool = False,
+    named: bool = True,
+) -> list[tuple[float, float]]:
     """Draw the study's thresholds of an output as lines; for an angle, on both sides.
 
     A threshold so far away that it would compress the data is drawn as an arrow at the edge.
@@ -86,7 +91,15 @@ def mark_thresholds(
         Unit of the axis.
     vertical : bool
         Whether the output is on the vertical axis.
+    named : bool
+        Whether the legend names a line within the frame.
+
+    Returns
+    -------
+    list of tuple of float
+        Of each line: the threshold [CF units], and its place on the axis.
     """
+    lines = []
     ends, scale = (axes.get_ylim, axes.get_yscale) if vertical else (axes.get_xlim, axes.get_xscale)
     line = axes.axhline if vertical else axes.axvline
     for asked in result.analysis.thresholds.get(element.output, ()):
@@ -97,7 +110,9 @@ def mark_thresholds(
         for place in (-at, at) if element.is_angle else (at,):
             style: Any = {"color": LIMIT, "label": words}
             if _is_near(place, low, high, scale() == "log"):
+                style["label"] = style["label"] if named else None
                 line(place, lw=1.0, ls=(0, (4, 1.5)), **style)
+                lines.append((asked, place))
             else:
                 edge = float(place > high)
                 arrow = ("v^" if vertical else "<>")[int(edge)]
@@ -105,6 +120,7 @@ def mark_thresholds(
                 style["label"] += ", outside the frame"
                 axes.plot(*spot, arrow, ms=5, transform=axes.transAxes, clip_on=False, **style)
             words = f"_{words}"  # one line of the legend
+    return lines
 
 
 def _is_near(place: float, low: float, high: float, logarithmic: bool) -> bool:
@@ -141,6 +157,17 @@ def shares_in_bins(
     counts = np.histogram(element.values[selected] / unit.size, edges, weights=worth[selected])[0]
     total = worth[kept].sum()
     return np.asarray(counts / total if total > 0 else counts)
+
+
+def densities(shares: Floats, edges: Floats, wide: bool) -> Floats:
+    """Return the densities of shares in bins: per unit of the axis, or per decade of a wide one."""
+    return np.asarray(shares / np.diff(np.log10(edges) if wide else edges))
+
+
+def density_label(unit: ReadableUnit, wide: bool) -> str:
+    """Return the label of an axis of densities."""
+    per = "decade" if wide else unbroken(unit.name) if unit.name != "1" else ""
+    return f"Density [per {per}]" if per else "Density"
 
 
 def _bin_count(values: Floats) -> int:

@@ -76,8 +76,10 @@ LIMIT = "#C2185B"
 """Colour of limits: thresholds of a study, stops of a machine."""
 SHADES = (INK, "#9A9A9A", "#707070", "#BBBBBB")
 """Shades of the elements of an output, combined with `LINES`."""
-BARS = ("#6B7580", "#B4BBC2", "#8E979F", "#D0D5DA")
-"""Shades of the kinds of indices."""
+BARS = ("#4A7BA6", "#A9C3DA", "#7F8C99", "#CFD6DC")
+"""Colours of the kinds of indices, and of histograms."""
+BAND = "#2F7FBF"
+"""Colour of the confidence bands of a single curve."""
 LINES = ("-", "--", "-.", ":")
 
 _STYLE: Any = {

@@ -1,6 +1,8 @@
 """Figures of sensitivity indices: as bars, and along a dimension of an output."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from math import isfinite, nan
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,7 @@ from uq.assess.findings import Findings
 from uq.assess.sensitivities import TargetIndices, methods, ranking, sensitivities, size
 from uq.assess.targets import FORMS, split_name
 from uq.errors import InputError
-from uq.indices.index import BY_CORRELATION
+from uq.indices.index import BY_CORRELATION, IndexKind, Null
 from uq.render.figures.figure import BARS, INK, LINES, SHADES, styled
 from uq.render.figures.panel import (
     arrows,
@@ -24,9 +26,16 @@ from uq.render.figures.panel import (
     roomy,
     title,
 )
-from uq.render.figures.words import as_label, element_in_words, labelled, place_in_words
+from uq.render.figures.words import (
+    as_label,
+    element_in_words,
+    input_label,
+    labelled,
+    place_in_words,
+)
 from uq.result.result import AnyResult, Result
-from uq.text.numbers import threshold
+from uq.stats.estimate import Estimate
+from uq.text.numbers import counted, threshold
 from uq.text.units import unit_of
 
 
@@ -37,9 +46,12 @@ def index_bars(
     *,
     method: str | None = None,
     indices: TargetIndices | None = None,
+    every: bool = False,
     axes: Axes | None = None,
 ) -> Figure:
     """Draw the sensitivity indices of one output as bars, with their 95 % intervals.
+
+    Inputs with a negligible index are counted, not drawn.
 
     Parameters
     ----------
@@ -51,6 +63,8 @@ def index_bars(
         By default the first that the study asks for.
     indices : TargetIndices, optional
         The indices, if already computed.
+    every : bool
+        Draw all inputs.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -65,12 +79,15 @@ def index_bars(
     """
     result = Result.of(result)
     shown = indices or _only(result, output, method)
-    name, every = shown.name, shown.kinds().items()
-    kinds = {kind: values for kind, values in every if kind.unit != "p-value"}
+    name, of_kinds = shown.name, shown.kinds().items()
+    kinds = {kind: values for kind, values in of_kinds if kind.unit != "p-value"}
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
+    if not every:
+        parameters = _that_matter(parameters, kinds, shown.indices.nulls)
+    others = [name for name in last if name not in parameters]
     labels = [
-        labelled(result.dataset[parameter], width=30)
+        input_label(result.dataset[parameter], width=30)
         + f"\n({BY_CORRELATION})" * (parameter in shown.indices.by_correlation)
         for parameter in parameters
     ]
@@ -110,10 +127,43 @@ def index_bars(
     )
     form, *_ = split_name(name)
     unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect [unit of the output]"
-    axis = "Sensitivity index" if shares else unit
-    panel.set_xlabel(axis + has_intervals * ",\nwith 95 % interval")
+    is_alone = len(kinds) == 1 and not shown.indices.nulls
+    of_kind = f": {next(iter(kinds)).words}" if is_alone else ""
+    axis = f"Sensitivity index{of_kind}" if shares else unit
+    rest = ""
+    if others:
+        most = max(abs(size(values[name])) for values in kinds.values() for name in others)
+        rest = f"\n{counted(len(others), 'other input')}: at most {most:.2g}"
+    panel.set_xlabel(axis + has_intervals * ",\nwith 95 % interval" + rest)
+    if is_alone and shares:
+        panel.containers[0].set_label("_")
     heading(panel, description)
     return finish(panel)
+
+
+def _that_matter(
+    parameters: list[str],
+    kinds: Mapping[IndexKind, Mapping[str, Estimate]],
+    nulls: Mapping[IndexKind, Null],
+) -> list[str]:
+    """Return the inputs whose indices are not negligible, the largest last; at least a few."""
+    limits = {}
+    for kind, values in kinds.items():
+        largest = max((abs(size(index)) for index in values.values()), default=0.0)
+        null = nulls[kind].largest if kind in nulls else nan
+        limits[kind] = max(_NEGLIGIBLE * largest, null if isfinite(null) else 0.0)
+
+    def matters(kind: IndexKind, index: Estimate) -> bool:
+        if kind.unit == "output":  # an effect may be negative
+            return abs(size(index)) > limits[kind]
+        return size(index) > limits[kind] and not index.low <= 0
+
+    matter = [
+        name
+        for name in parameters
+        if any(matters(kind, values[name]) for kind, values in kinds.items())
+    ]
+    return (matter if len(matter) >= _FEWEST_BARS else parameters[-_FEWEST_BARS:])[-_MOST_BARS:]
 
 
 def range_of_indices(ends: tuple[float, float]) -> tuple[float, float]:
@@ -173,6 +223,8 @@ FEWEST = 3
 """Minimum number of coordinates of a curve."""
 
 _MOST_INPUTS = 4
+_FEWEST_BARS, _MOST_BARS = 4, 8
+_NEGLIGIBLE = 0.04  # relative to the largest index
 
 
 def dimension_of(result: Result, output: str) -> str | None:

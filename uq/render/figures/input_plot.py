@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from uq.assess.row_inputs import EVERYWHERE
 from uq.assess.sampled_inputs import laws_and_values, weights_of_samples
 from uq.errors import InputError, choices
-from uq.render.figures.elements_plot import bins, input_axis
+from uq.render.figures.elements_plot import bins, densities, input_axis
 from uq.render.figures.figure import INK, ROWS, styled
-from uq.render.figures.panel import figure_of, grid, logarithmic, roomy
+from uq.render.figures.panel import figure_of, grid, logarithmic, roomy, whole_numbers
 from uq.render.figures.words import as_label
 from uq.result.elements import Floats
 from uq.result.result import AnyResult, Result
@@ -71,9 +71,13 @@ def inputs(
         edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
         worth = np.ones(len(values)) if weights is None else weights
         shares = np.histogram(values, edges, weights=worth)[0] / worth.sum()
-        panel.stairs(shares, edges / per, fill=True, color=ROWS)
-        panel.stairs(_stated_shares(law, edges), edges / per, color=INK, lw=1.0)
+        sampled = densities(shares, edges / per, wide)
+        stated = densities(_stated_shares(law, edges), edges / per, wide)
+        panel.stairs(sampled, edges / per, fill=True, color=ROWS)
+        panel.stairs(stated, edges / per, color=INK, lw=1.0)
         panel.set_ylim(0, None)
+        whole_numbers(panel.yaxis)
+        panel.locator_params(axis="y", nbins=3)
         roomy(panel, 6 // columns)
         if wide:
             logarithmic(panel)
@@ -81,7 +85,7 @@ def inputs(
     rows = f"{grouped(count)}{' weighted' if weights is not None else ''} rows"
     several = len(result.independent) > count
     of_samples = ", one of each sample" * several
-    caption = f"Share of {rows} per bin{of_samples}; line: stated law"
+    caption = f"Density of {rows}{of_samples}; line: stated law"
     panels[0].set_title(textwrap.fill(printed(caption), 50).replace("\u00a0", " "), loc="left")
     return figure_of(panels[0])
 

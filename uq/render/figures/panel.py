@@ -177,7 +177,8 @@ def finish(axes: Axes, entries: int | None = None) -> Figure:
     figure = figure_of(axes)
     if isinstance(figure, Drawing):
         short = max(map(len, labels), default=0) <= _HALF
-        across = 2 if short or figure.get_figwidth() > WIDTH else 1
+        is_wide_figure = figure.get_figwidth() > 1.5 * WIDTH
+        across = (1 + short) * (1 + is_wide_figure)
         lines = ceil(len(labels) / across) if entries is None else entries
         figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from uq.assess.answer.wording import called
 from uq.assess.row_inputs import independent_inputs
 from uq.errors import InputError
 from uq.indices.index import RefusedError
@@ -19,9 +20,19 @@ from uq.render.figures.elements_plot import (
     mark_thresholds,
     occurring_regimes,
 )
-from uq.render.figures.figure import INK, PAGE, ROWS, SHADES, WIDTH, point_size, styled, thinned
+from uq.render.figures.figure import (
+    INK,
+    PAGE,
+    ROWS,
+    SHADES,
+    WIDTH,
+    point_size,
+    styled,
+    thinned,
+    width_or,
+)
 from uq.render.figures.panel import finish, grid, is_wide, logarithmic, roomy, title, whole_numbers
-from uq.render.figures.words import as_label, label, labelled, rows_in_words
+from uq.render.figures.words import as_label, input_label, label, rows_in_words
 from uq.result.elements import (
     Element,
     Floats,
@@ -39,6 +50,7 @@ _EMPTY = 0.05  # gap around a mean that breaks a line, relative to the panel's h
 _RARELY = 3  # in mean spacings: a gap that occurs by chance once in hundreds of cases
 _TORN = 8  # in mean spacings: a gap rare by chance within a median's interval
 _SHORTEST = 3  # minimum number of slices of a line
+_IN_A_ROW = 5.0  # width from which panels stand side by side [inch]
 _GAP = 0.1  # gap between rows that breaks a line, relative to the panel's width
 
 
@@ -69,9 +81,13 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
     element = rows.named_elements(output)[0]
     inputs = independent_inputs(rows)
     first = leading(inputs, element)[:_MOST_INPUTS]
-    alone = len(first) < 2
-    width = WIDTH if alone else PAGE
-    panels = grid(axes, 2.4, 1, len(first), width, sharey=True)[0]
+    wide_enough = len(first) > 1 and width_or(PAGE) > _IN_A_ROW
+    alone = not wide_enough
+    width = PAGE if wide_enough else WIDTH
+    if alone and len(first) > 1 and axes is None:
+        panels = grid(axes, 0.4 + 1.7 * len(first), len(first), 1, width, sharey=True)[:, 0]
+    else:
+        panels = grid(axes, 2.4, 1, len(first), width, sharey=True)[0]
     unit = display_unit(element.units, element.values)
     shown = replace(
         element,
@@ -97,11 +113,16 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
         if not np.isfinite(shown.values).any():
             panel.set_yticks([])
         mark_thresholds(panel, result, element, unit, vertical=True)
+        if alone and len(first) > 1:
+            panel.set_ylabel(as_label(called(element.output), unit.name, 20))
     above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(result, element)]
     statistic = "median" if medians else "mean"
     of_each = f"lines: {statistic} in slices of a regime's rows" if len(parts) > 1 else ""
     remarks = [rows_in_words([element]), of_each]
-    if not alone:
+    if alone and len(first) > 1:
+        subtitle = ", ".join(filter(None, (label(result, element), rows_in_words([element]))))
+        above, remarks = [subtitle], [of_each]
+    elif not alone:
         above, remarks = [", ".join(filter(None, above))], ["; ".join(filter(None, remarks))]
     title(panels[0], *above, *remarks)
     return finish(panels[0])
@@ -289,11 +310,11 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
             roomy(panel, 6 if alone else 3)
             if i == side - 1:
                 panel.set_xlabel(
-                    labelled(rows.dataset[across], units[across].name, 38 if alone else 17)
+                    input_label(rows.dataset[across], units[across].name, 38 if alone else 17)
                 )
             if j == 0:
                 panel.set_ylabel(
-                    labelled(rows.dataset[down], units[down].name, 30 if alone else 20)
+                    input_label(rows.dataset[down], units[down].name, 30 if alone else 20)
                 )
     for name, (_, colour) in regimes.items():
         panels[0, 0].plot([], [], ".", ms=size, mew=0, color=colour, label=name)

@@ -21,6 +21,7 @@ from uq.text.element_names import is_whole
 
 _MOST_INPUTS = 6
 _MOST_OUTPUTS = 2
+_FEWEST_ROWS = 80
 
 
 def the_result(findings: Findings) -> Iterator[FigureSubject]:
@@ -61,6 +62,8 @@ def leading_categories(findings: Findings, names: Sequence[str]) -> Iterator[Fig
     """Yield each category that the study names, and the regime."""
     shown = {*findings.result.analysis.outputs, REGIME}
     for category in categories(findings):
+        if category.output == REGIME and in_one_regime(findings, REGIME):
+            continue
         if category.output in (shown if tuple(names) == leading_outputs(findings) else names):
             yield category
 
@@ -178,6 +181,11 @@ def in_one_regime(findings: Findings, name: str) -> bool:
 def has_plain_rows(findings: Findings, name: str) -> bool:
     """Return whether all rows have equal weight."""
     return not findings.result.has_weights
+
+
+def has_enough_rows(findings: Findings, name: str) -> bool:
+    """Return whether an input varies, and there are enough rows for slices of it."""
+    return bool(independent_inputs(findings.rows)) and len(findings.rows) >= _FEWEST_ROWS
 
 
 def has_several_inputs(findings: Findings, name: str) -> bool:

@@ -188,6 +188,17 @@ def labelled(variable: xr.DataArray, unit: str = "", width: int = 44) -> str:
     return as_label(meaning_of(variable), unit, width, symbol_of(variable))
 
 
+def input_label(variable: xr.DataArray, unit: str = "", width: int = 44) -> str:
+    """Return the label of an input by the name that answers use, with its symbol.
+
+    A name that is only a symbol, such as ``x1``, is replaced by its meaning.
+    """
+    name, symbol = str(variable.name), symbol_of(variable)
+    if is_short(name) or name == symbol:
+        return labelled(variable, unit, width)
+    return as_label(name.replace("_", " "), unit, width, symbol)
+
+
 def with_quantities(ds: xr.Dataset) -> xr.Dataset:
     """Return a time history of `uq.simulate` as a Dataset with one variable per quantity.
 

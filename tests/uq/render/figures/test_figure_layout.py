@@ -138,7 +138,7 @@ def test_short_entries_of_a_legend_stand_side_by_side():
         is_side_by_side.append([text.get_window_extent().y0 for text in legend.get_texts()])
     side_by_side, below_each_other = is_side_by_side
     assert len(set(side_by_side)) == 1 < len(side_by_side)
-    assert len(set(below_each_other)) == len(below_each_other) == 4
+    assert len(set(below_each_other)) == len(below_each_other) == 7
 
 
 def test_the_legend_of_many_indices_of_few_inputs_has_room():

@@ -119,7 +119,7 @@ def test_inputs_of_samples_of_several_rows_say_which_rows_are_drawn():
         "uncertain": {"x1": inside, "x2": inside | {"level": "chance"}},
     }
     figure = plots.inputs(computed(study_of(tables)))
-    assert "30 rows per bin, one of each sample" in words(figure)
+    assert "Density of 30 rows, one of each sample" in words(figure)
     lay_out(figure)
     assert not collisions(figure)
     assert "sample" not in words(plots.inputs(linear()))

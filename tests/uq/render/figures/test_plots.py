@@ -1,9 +1,11 @@
 """Figures: what each shows of a result."""
 
+import re
+
 import numpy as np
 import pytest
 from answered import lifetime
-from computed import asking, kinds, linear, summarised, with_output
+from computed import asking, computed, kinds, linear, study_of, summarised, with_output
 from drawn import words
 from matplotlib.figure import Figure
 from wordings import sentence
@@ -48,7 +50,8 @@ def test_histogram_shows_every_row_once():
     figure = plots.histogram(linear(samples=300), "y")
     (patch,) = figure.axes[0].patches
     counts, edges, _ = patch.get_data()
-    assert sum(counts) == pytest.approx(1) and edges[0] < 2 < 8 < edges[-1]
+    assert sum(counts * np.diff(edges)) == pytest.approx(1) and edges[0] < 2 < 8 < edges[-1]
+    assert figure.axes[0].get_ylabel() == "Density"
     assert figure.axes[0].get_xlabel() == "Value of the function"
     both = plots.histogram(kinds(samples=100), "work")
     assert both.axes[0].get_xlabel() == "Work rate [W]" and "right" in words(both)
@@ -65,13 +68,9 @@ def test_rows_at_the_ends_of_a_logarithmic_histogram_are_drawn():
     ds = asking(with_output(linear(samples=400), "depth", values), outputs=["depth"])
     (axes,) = plots.histogram(ds, "depth").axes
     assert axes.get_xscale() == "log"
-    assert np.isclose(sum(drawn_shares(axes)), 1.0)
-
-
-def drawn_shares(axes):
-    """Return the heights of the steps of a histogram."""
-    (steps,) = (patch for patch in axes.patches if hasattr(patch, "get_data"))
-    return steps.get_data().values
+    assert axes.get_ylabel() == "Density [per decade]"
+    (steps,) = (patch.get_data() for patch in axes.patches if hasattr(patch, "get_data"))
+    assert np.isclose(sum(steps.values * np.diff(np.log10(steps.edges))), 1.0)
 
 
 def test_marks_lie_on_the_curve_that_integrates_what_scales_a_life():
@@ -162,8 +161,8 @@ def test_histograms_by_regime_add_up():
     figure = plots.histogram_by_regime(ds, "work[side=left]")
     slow, fast = figure.axes[0].patches
     parts = [
-        np.sum(histogram.get_data().values - histogram.get_data().baseline)
-        for histogram in (slow, fast)
+        np.sum((steps.values - steps.baseline) * np.diff(steps.edges))
+        for steps in (slow.get_data(), fast.get_data())
     ]
     assert sum(parts) == pytest.approx(1)
     assert parts[0] == pytest.approx(float((ds["regime"] == 0).mean()))
@@ -171,6 +170,52 @@ def test_histograms_by_regime_add_up():
     assert len(plots.histogram_by_regime(ds, "life").axes) == 4
     part = with_output(ds, "part", np.where(ds["regime"] == 0, ds["x1"], np.nan))
     assert "fast" not in words(plots.histogram_by_regime(part, "part"))
+
+
+def test_a_figure_of_a_life_names_its_bound_its_threshold_and_what_is_assumed():
+    ds, _ = lifetime()
+    ds = asking(
+        ds,
+        thresholds={"life": 864000.0},
+        tolerance={"coverage": 0.95, "confidence": 0.95},
+    )
+    figure = plots.lifetime(ds, "life")
+    text = " ".join(words(figure).split())
+    (share,) = summarised(ds)["outputs"]["life"]["thresholds"].values()
+    assert f"{100 * share['below']['value']:.1f} % within 10 days" in text
+    bound = summarised(ds)["outputs"]["life"]["tolerance"]["lower"] / 86400
+    (named,) = re.findall(r"95/95 life ([\d.]+) days", text)
+    assert bound - 0.01 < float(named) <= bound  # rounded to the safe side
+    assert "not a prediction" not in text
+    ds["depth"].attrs["source"] = "assumed: a guess"  # all lives are proportional to it
+    assert "not a prediction: depth assumed" in words(plots.lifetime(ds, "life"))
+
+
+def test_index_bars_count_inputs_that_do_not_matter():
+    inside = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
+    tables = {
+        "study": {"name": "g", "model": "g-function"},
+        "design": {"method": "saltelli", "samples": 256, "replicates": 4},
+        "uncertain": {f"x{i}": inside for i in range(1, 9)},
+    }
+    ds = computed(study_of(tables))
+    figure = plots.index_bars(ds, "y")
+    labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    assert len(labels) == 4 and "x_{1}" in labels[-1]
+    assert "4 other inputs: at most 0.0" in words(figure)
+    assert len(plots.index_bars(ds, "y", every=True).axes[0].get_yticklabels()) == 8
+
+
+def test_shares_of_regimes_add_up_over_the_input_that_decides_them():
+    ds = kinds(samples=200)
+    first, _ = plots.regime_shares(ds).axes
+    assert first.get_xlabel() == "First input ($x_{1}$) [m]"  # decides it alone
+    slow, fast = (patch.get_data() for patch in first.patches)
+    assert np.allclose(slow.values, fast.baseline) and np.allclose(fast.values, 1)
+    middles = (slow.edges[1:] + slow.edges[:-1]) / 2
+    assert (slow.values[middles < 0.45] == 1).all() and (slow.values[middles > 0.55] == 0).all()
+    with pytest.raises(InputError, match="need a model with regimes"):
+        plots.regime_shares(linear())
 
 
 def test_a_line_has_no_pieces_too_short_to_be_one():
