@@ -246,7 +246,9 @@ def _chosen(
     elif every:
         drawn = list(drawables(FIGURES | TABLES, findings))
     else:
-        groups = [[output] for output in outputs] or [subjects.leading_outputs(findings)]
+        groups: list[tuple[str, ...]] = [(output,) for output in outputs] or [
+            subjects.leading_outputs(findings)
+        ]
         leading = (leading_drawables(FIGURES, findings, group) for group in groups)
         return list(chain.from_iterable(leading))
     about = [drawable for drawable in drawn if not outputs or drawable.subject.output in outputs]

@@ -148,7 +148,7 @@ def histogram_by_regime(result: AnyResult, output: str, *, axes: Axes | None = N
         whole_numbers(panel.yaxis)
         panel.locator_params(axis="y", nbins=4)
         if len(chosen) > 1:
-            place = {"transform": panel.transAxes, "va": "top", "size": 7}
+            place: Any = {"transform": panel.transAxes, "va": "top", "size": 7}
             panel.text(0.02, 0.98, label(result, element), **place)
     entitle(panels[0], chosen)
     below = "" if chosen == every else f"\nthe first and the last of {len(every)} elements"

@@ -124,7 +124,9 @@ def pictures(findings: Findings, section: str, without: Container[str] = ()) -> 
     """
     for drawable in drawables(FIGURES, findings, section):
         if drawable.subject.name not in without:
-            drawn = picture(drawable.draw(), readable(drawable.caption), drawable.file)
+            figure = drawable.draw()
+            assert isinstance(figure, Figure)  # a page takes its tables from elsewhere
+            drawn = picture(figure, readable(drawable.caption), drawable.file)
             yield drawn._replace(subject=drawable.subject.name)
 
 
