@@ -208,10 +208,10 @@ def page(result: Result, name: str) -> str:
     str
     """
     findings = Findings(result)
+    methods = sensitivity_of(findings)  # before the answer, which then finds its indices computed
     answer = conclude(findings)
     summary = findings.summary
     described = outcomes(result, summary)
-    methods = sensitivity_of(findings)
     drawn = list(pictures(findings, "results", without=findings.absent))
     by_regime = list(pictures(findings, "rows"))
     figure = figure_of_subject(answer, drawn, by_regime)

@@ -7,6 +7,7 @@ from urllib.parse import unquote
 import pytest
 from computed import computed, kinds, study_of
 
+from uq.render.figures.figure import BARS, COLOURS
 from uq.render.html.page import page
 from uq.result.result import Result
 
@@ -69,6 +70,12 @@ def test_controls_are_named_and_tables_have_heads(browser, report):
         browser.value("document.querySelectorAll('[tabindex]:not([tabindex=\"0\"])').length") == 0
     )
     assert browser.value("document.querySelectorAll('h1').length") == 1
+
+
+def test_a_page_has_the_colours_of_its_figures(report):
+    text = report.read_text().lower()
+    assert f"--accent: {COLOURS[0]}".lower() in text and f"--warn: {COLOURS[1]}".lower() in text
+    assert f".bar-fill {{ background: {BARS[0]}".lower() in text
 
 
 def test_what_can_be_sorted_or_moved_looks_so(browser, report):
