@@ -238,7 +238,7 @@ def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventC
     Returns
     -------
     EventCurve or None
-        Each interval covers the probability given that the input lies in its part, whatever the
+        Each interval covers the probability given that the input is in its part, whatever the
         curve within. None with fewer than two parts of `ROWS_PER_PART` rows.
     """
     kept = np.isfinite(hits)

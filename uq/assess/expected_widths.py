@@ -37,7 +37,7 @@ class Widths:
     quantiles : dict of float to float or None
         Probability -> width.
     thresholds : dict of float to float or None
-        Threshold -> width of the probability of lying above.
+        Threshold -> width of the probability of exceeding it.
     indices : dict of str to float or None
         The widest of each kind (``S1``, ``ST``) that the design feeds and a pilot can forecast.
     """

@@ -43,7 +43,7 @@ def joint_bounds(rows: Result, analysis: AnalysisTable) -> list[JointBound]:
     ----------
     rows : Result
         The independent rows of a result. Those in which one of the outputs is undefined are left
-        out; those that failed lie outside.
+        out; failed rows count as outside.
     analysis : AnalysisTable
     """
     wanted = list(_wanted(rows, analysis.joint_bounds))

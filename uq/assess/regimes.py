@@ -127,11 +127,11 @@ def regimes(result: AnyResult) -> xr.Dataset:
         ``distance``, of Kolmogorov and Smirnov, between these and the inputs of all other rows, and
         ``distance_dummy``, the largest for inputs without effect; NaN where one side has too few
         rows. Over ``output`` and ``regime``: ``rows``, ``mean``, ``sd`` (NaN where the tail is too
-        heavy). Over ``output``: ``between``, the share of its variance that lies between
+        heavy). Over ``output``: ``between``, the share of its variance between
         regimes, with ``between_low`` and ``between_high``. Lifetimes are replaced by their
         logarithms, or by their ranks where rows never end or are censored. Without a dimension:
         ``uncertainty_exponent`` of the boundary between the regimes, with ``_low`` and ``_high``;
-        its attribute ``reason`` says why it is NaN.
+        its attribute ``reason`` explains a NaN.
 
     Raises
     ------

@@ -151,7 +151,7 @@ def notes_on_inputs(result: Result) -> list[str]:
         if isinstance(entry, Tied):
             tied[entry.equals].append(name)
         elif entry.times is not None:
-            notes.append(f"{name} is {entry.times} times a factor: its index is that of the factor")
+            notes.append(f"{name} is {entry.times} times a factor: its index refers to the factor")
     for name, others in tied.items():
         equal, together = ("equals", "both") if len(others) == 1 else ("equal", "all of them")
         notes.append(

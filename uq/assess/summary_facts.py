@@ -43,7 +43,7 @@ def summary_facts(summary: Summary, *, of_reports: bool = False) -> Fact:
         ``samples`` and ``status`` count all rows. Everything else describes the ``rows_used``, the
         independent ones: ``regime`` (label -> count and share with interval), ``categories`` (the
         same of other categories, such as the period, where they occur), ``outputs`` (name of
-        element -> its statistics, each under its key) and ``notes``, sentences on what is missing.
+        element -> its statistics, each under its key) and ``notes``, sentences on missing results.
         A number that does not exist or is not finite is None; beside it ``never``,
         ``low_censored`` and the like state why. Where rows failed, ``failed_low`` and
         ``failed_high`` bound an estimate (`uq.assess.failed_rows`). ``fits``, if asked for: the

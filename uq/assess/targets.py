@@ -162,7 +162,7 @@ class IndexTarget:
     refused : str
         Why there can be no index of it, or "".
     event : bool
-        Whether the values say if something happened, 1, or not, 0.
+        Whether the values indicate if something happened, 1, or not, 0.
     notes : tuple of str
         Sentences on the transform of the output.
     """
@@ -294,7 +294,7 @@ def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Ind
     return IndexTarget(f"{form}({element.name})", element, values, refused, notes=notes)
 
 
-INDICES_OF = "these are indices of its {form}; ask for {name} for those of the output itself"
+INDICES_OF = "indices are of its {form}; ask for {name} for the output itself"
 
 
 def lightened(target: IndexTarget, template: str = INDICES_OF) -> IndexTarget:

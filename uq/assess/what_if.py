@@ -75,7 +75,7 @@ def what_if(result: AnyResult, changes: Mapping[str, Any]) -> pd.DataFrame:
         When the changes make no study, or one with values where the result has no rows, and these
         inputs do more than scale lives.
     RunError
-        When the rows are too few for these laws; says how many to add.
+        When the rows are too few for these laws; the message gives the number to add.
 
     References
     ----------

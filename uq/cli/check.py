@@ -40,7 +40,7 @@ def check(path: str, model: str | None) -> None:
     parts += [f"{count} {name}" for name, count in factors.items() if count > 1]
     stated = ", stated to be independent" * design.independent
     if design.rows_of_a_sample > 1 and kind.independent:
-        stated += "; those of one sample are not"
+        stated += "; rows of one sample are not"
     dependent = study.dependence is not None or (kind.imported and not design.independent)
     shared = study.random and kind.shares_seeds
     seeds = "the model is random: rows that are compared share a seed"

@@ -65,7 +65,7 @@ class LimitState:
     threshold : float
         In the output's unit.
     below : bool
-        Whether the event lies below it.
+        Whether the event is below it.
     evaluator : Evaluator
     first : int, optional
         Number of the first row, which with the seed gives the random numbers of a row.

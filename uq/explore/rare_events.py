@@ -81,7 +81,7 @@ def rare_event(
     threshold : float
         In the output's unit.
     below : bool
-        Whether the event lies below the threshold instead of above.
+        Whether the event is below the threshold instead of above.
     method : {"subset", "importance"}
         Subset simulation follows the output towards the event from every side. It assumes that the
         output rises towards every part of the event, without a jump. Importance sampling around the

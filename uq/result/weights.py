@@ -116,7 +116,7 @@ def sample_weights(rows: xr.Dataset, place: Nesting, question: str) -> Floats | 
         return None
     if unit := rows.attrs.get(OF_UNIT, ""):
         raise InputError(
-            f"no {question}: these rows stand for unit '{unit}'; use the whole posterior"
+            f"no {question}: these rows represent unit '{unit}'; use the whole posterior"
         )
     if why := rows.attrs.get(ONLY_INSPECTED, ""):
         raise InputError(f"no {question}: {why}")

@@ -1,4 +1,4 @@
-"""Laws of inputs, their dependence, and designs of points.
+"""Laws of inputs and designs of points, with the dependence between inputs.
 
 Reading order; each part imports only those above it:
 

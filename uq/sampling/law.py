@@ -43,10 +43,10 @@ class Law(BaseModel):
 
     source: str = Field("", description="where the numbers come from; shown in every result")
     truncate: Annotated[tuple[float, float] | None, LIST] = Field(
-        None, description="[lower, upper]: the law given that the value lies between them"
+        None, description="[lower, upper]: the law conditional on a value between them"
     )
     times: str | None = Field(
-        None, description="another uncertain parameter; the law is that of its factor"
+        None, description="another uncertain parameter; the law applies to its factor"
     )
     level: Level = Field(OWN, description=LEVEL_MEANING, json_schema_extra=LEVEL_SCHEMA)
 

@@ -320,7 +320,7 @@ def scattered_share_interval(
     estimates : ndarray, shape (R,) or (R, k)
         One estimate per replicate.
     scatter_at : float or ndarray, optional
-        The share of which `estimates` are estimates, if it differs from `share`.
+        The share that `estimates` estimate, if it differs from `share`.
     confidence : float, optional
     rows : float or ndarray, shape (k,), optional
         Number of rows of all replicates: the upper limit of the effective number if hits are few.

@@ -175,7 +175,7 @@ def joint_bounds(
     failed : int
         Number of further rows that lack a value: they count as outside the bounds.
     coverage : float
-        Share of all rows that lie within all bounds.
+        Share of all rows within all bounds.
     confidence : float
         Probability of at least this coverage.
 

@@ -110,7 +110,7 @@ def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> E
     return min(lows), max(highs)
 
 
-EXACT = "exact: rows differ only in what is integrated"
+EXACT = "exact: rows differ only in integrated inputs"
 
 
 def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:

@@ -143,7 +143,7 @@ class Until(_Table):
     )
     input: str | None = Field(None, description="with `index`: of this input only")
     difference: Annotated[tuple[str, str], LIST, _DISTINCT] | None = Field(
-        None, description="with `index`: of the difference between those of two inputs"
+        None, description="with `index`: of the difference between the indices of two inputs"
     )
 
     @model_validator(mode="after")
@@ -293,7 +293,7 @@ _SURE_SCHEMA = {"type": "number", "exclusiveMinimum": 0, "maximum": 0.999999999}
 
 
 class AnalysisTable(_Table):
-    """What is made of the rows; may change without a row being computed again."""
+    """Analysis of the rows; may change without a row being computed again."""
 
     outputs: Annotated[tuple[str, ...], LIST, _DISTINCT] = Field(
         (), description="outputs to show; all if not given"

@@ -109,7 +109,7 @@ def input_faults(model: Model, entries: Entries) -> Iterator[InputFault]:
         elif not law_problem(law, other_parameter):  # otherwise reported for the other parameter
             low, high = support(law, other_parameter.bounds)
             if low <= 0 <= high:
-                problem = f"must not change sign or be zero: lies within {low:g} to {high:g}"
+                problem = f"must not change sign or be zero: is within {low:g} to {high:g}"
                 yield InputFault(path, problem, other)
             elif text := _product_problem(parameter, entry, law, other_parameter):
                 yield InputFault(("uncertain", name), text)

@@ -120,7 +120,7 @@ def _menu() -> Iterator[str]:
         arguments = ", or ".join(", ".join(names) for names in law.either or [keys])
         yield f"# {name}: {arguments}"
     yield "# Any of them may be truncated: truncate = [lower, upper]"
-    yield '# A parameter may be a multiple of another, the law that of the factor: times = "other"'
+    yield '# A parameter may be another times a factor with this law: times = "other"'
     yield '# A parameter may equal another, instead of having a law: equals = "other"'
     yield ""
     yield "# Rank correlations, with ones on the diagonal:"

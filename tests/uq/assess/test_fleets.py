@@ -71,7 +71,7 @@ def test_repeats_are_chance_within_a_unit():
 def test_points_over_what_is_shared_state_what_they_assume():
     """Where units are only counted; not where the probability is known in each world."""
     counted_units = fleet_of(Result(fleet_result(units=4, samples=100, depth=LISTED)), 4, [5e5])
-    sentence = "the 5 and 95 % points assume probits of the units' probability are about normal"
+    sentence = "the 5 and 95 % points assume probits of the units' probabilities are about normal"
     assert any(note.startswith(sentence) for note in counted_units.notes)
     for estimate in counted_units.by[5e5]:
         assert estimate.low.assumes and estimate.high.assumes and not estimate.estimate.assumes

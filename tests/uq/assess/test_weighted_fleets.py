@@ -119,5 +119,5 @@ def test_an_event_that_the_inspections_make_rare_has_no_shares(posterior):
     ids=["fleet", "levels"],
 )
 def test_an_inspected_unit_is_no_fleet(posterior, question):
-    with pytest.raises(InputError, match="these rows stand for unit 'A'; use the whole posterior"):
+    with pytest.raises(InputError, match="these rows represent unit 'A'; use the whole posterior"):
         question(as_unit(posterior, "A"))

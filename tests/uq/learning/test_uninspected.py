@@ -97,7 +97,7 @@ def test_fleets_of_units_that_share_only_what_is_integrated():
     share = by_level(Result(ds)).outputs["log(life)"].shares["shared"]
     truth = spread**2 / (spread**2 + sd**2)
     assert share.low < truth < share.high and share.high < DEPTH[1] ** 2 / (DEPTH[1] ** 2 + sd**2)
-    with pytest.raises(InputError, match="no fleets: these rows stand for unit 'A'"):
+    with pytest.raises(InputError, match="no fleets: these rows represent unit 'A'"):
         fleet_of(Result(as_unit(ds, "A")), 3)
 
 

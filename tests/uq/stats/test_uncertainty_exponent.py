@@ -105,7 +105,7 @@ def test_every_reader_tells_how_intermingled_the_regimes_are(uq, tmp_path):
     assert "reason" not in document
     shown = " ".join(uq("summary", str(path)).out.split())
     assert f"uncertainty exponent {exponent.words()} (" in shown
-    assert "fewer outcomes are uncertain (50 % where" in shown
+    assert "fewer outcomes are uncertain (50 % at a smooth boundary" in shown
     table = api.regimes(ds)
     ends = [float(table[f"uncertainty_exponent{end}"]) for end in ("", "_low", "_high")]
     assert tuple(ends) == exponent.estimate.numbers

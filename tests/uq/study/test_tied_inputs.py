@@ -76,7 +76,7 @@ def test_no_product_leaves_the_bounds():
         (
             {"x1": {"distribution": "integer-range", "lower": 0, "upper": 1}}
             | {"x2": UNIFORM | {"times": "x1"}},
-            '[uncertain.x2] times = "x1": must not change sign or be zero: lies within 0 to 1',
+            '[uncertain.x2] times = "x1": must not change sign or be zero: is within 0 to 1',
         ),
     ],
 )

@@ -9,7 +9,7 @@ from uq.sampling.law import Law
 Arguments = Mapping[str, Any]
 
 WIDTHS = (0.5, 0.7, 0.85, 1.15, 1.3)
-"""Factors of the scatter; a law with ends can only be narrowed, as no rows lie beyond them."""
+"""Factors of the scatter; a law with ends can only be narrowed, as no rows are beyond them."""
 
 SHIFTS = (-1.0, -0.5, 0.5, 1.0)
 """Shifts of the middle, in standard deviations."""

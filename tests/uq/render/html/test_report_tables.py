@@ -76,7 +76,7 @@ def test_tolerance_bounds_say_what_is_covered_and_how_surely():
     bounds = {"coverage": 0.8, "confidence": 0.95}
     table = results_of(lives(tolerance=bounds), "Tolerance bounds")
     assert table.caption == (
-        "Tolerance bounds: with 95 % confidence each, 80 % of all lie above the lower, and 80 %"
+        "Tolerance bounds: with 95 % confidence each, 80 % of all are above the lower, and 80 %"
         " below the upper"
     )
     assert lines(table)["life"]["upper"] == "never"

@@ -187,7 +187,7 @@ def test_too_few_rows_for_several_changes_are_left_to_the_command(shown):
     move(browser, "z", "width", 0)
     assert np.isfinite(cells(browser, "#tolerances")["life/0.8"][0][0])
     move(browser, "a", "width", 0)
-    assert status(browser).startswith("Too few rows carry all these changes")
+    assert status(browser).startswith("Too few rows support all these changes")
     assert np.isnan(cells(browser, "#tolerances")["life/0.8"][0][0])
     browser.value("document.querySelector('.as-studied').click()")
     assert status(browser) == "The laws of the study."
