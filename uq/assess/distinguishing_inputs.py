@@ -41,7 +41,7 @@ class Apart:
         1 if the earliest rows have higher values, -1 if lower; 0 where only their distance from
         the middle differs.
     outwards : int
-        With direction 0: 1 if they lie farther from the median of all rows, -1 if nearer.
+        With direction 0: 1 if they are farther from the median of all rows, -1 if nearer.
     rank : Estimate
         Mean rank of the earliest rows within all, from 0 to 1; 0.5 for all rows. With direction
         0, of the distances of the ranks from the middle.

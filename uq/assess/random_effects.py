@@ -28,8 +28,7 @@ _SETTLED = 1e-7
 
 ASSUMES = (
     "that probits of the units' probabilities are about normal where noise hides their spread;"
-    " intervals"
-    " do not assume this"
+    " intervals do not assume this"
 )
 FEW = f"{FEWEST_WORLDS} samples are required for points over shared inputs"
 FEW_ENDED = f"fewer than {FEWEST_WORLDS} units have ended, or not ended, by then"

@@ -1,4 +1,4 @@
-"""Laws of inputs and designs of points: what is uncertain, how inputs depend, which points.
+"""Laws of inputs and designs of points, with the dependence between inputs.
 
 Reading order; each part imports only those above it:
 

@@ -216,7 +216,7 @@ def test_a_seed_too_long_for_a_generator_is_said_so(uq, write_function):
 
 
 def test_a_certain_event_has_no_design_point():
-    with pytest.raises(InputError, match="all of 1000 rows lie beyond the threshold"):
+    with pytest.raises(InputError, match="all of 1000 rows are beyond the threshold"):
         rare_event(rare_linear(), "y", -1.0, method="importance", workers=0)
     certain = rare_event(rare_linear(), "y", -1.0, workers=0, replicates=2)
     assert float(certain["probability"]) == float(certain["high"]) == 1.0

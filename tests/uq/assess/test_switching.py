@@ -38,7 +38,7 @@ def test_a_repeat_may_end_in_another_regime():
     calm = by_level(Result(regimes(ds, ds["x2"].values > 0.5))).another_regime
     assert calm.value == calm.low == 0 and 0 < calm.high < 0.03  # 200 samples, not 2400 rows
     lost = by_level(Result(regimes(ds, np.full(len(chance), -1)))).another_regime
-    assert "a single repeat" in lost.reason
+    assert "one repeat per unit" in lost.reason
 
 
 def test_no_repeat_ends_in_another_regime_where_nothing_is_random():

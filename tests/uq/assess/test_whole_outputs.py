@@ -129,13 +129,13 @@ def test_all_elements_have_one_form():
     ds = kinds("saltelli", analysis={"outputs": ["work", "life"]})
     outputs = indices(ds)["outputs"]
     assert {"work[:]", "rank(life[:])"} <= outputs.keys()
-    assert "all 2 elements together" in outputs["work[:]"]["notes"][0]
+    assert "combines all 2 elements" in outputs["work[:]"]["notes"][0]
     ds = curves()
     heavy = ds["worn"].values[:, 0] ** 4
     ds = with_elements(ds, "worn", heavy, ds["worn"].values[:, 1])
     outputs = indices(asking(ds, outputs=["worn"]))["outputs"]
     assert "log(worn[:])" in outputs and "worn[place=b]" in outputs
-    assert "ask for worn[:] for their own" in " ".join(outputs["log(worn[:])"]["notes"])
+    assert "ask for worn[:] for the values" in " ".join(outputs["log(worn[:])"]["notes"])
     assert "log(worn[:]) is more" in " ".join(
         indices(ds, output="worn[:]")["outputs"]["worn[:]"]["notes"]
     )
@@ -151,7 +151,7 @@ def test_it_has_a_name():
         ("angle[:]", "rbd-fast", r"no such element 'angle\[:\]'; did you mean 'angle'"),
         ("work[:]", "delta", "'delta' has no index of all elements together .* rbd-fast, sobol"),
         ("rate(work[:])", "rbd-fast", "no such output"),
-        ("P(work[:] > 1)", "rbd-fast", "an event is that of one element"),
+        ("P(work[:] > 1)", "rbd-fast", "an event concerns a single element"),
     ):
         with pytest.raises(InputError, match=sentence):
             indices(ds, method, output=asked)

@@ -176,7 +176,7 @@ def test_what_leads_alone_is_called_so_and_what_is_beyond_single_inputs_stated(o
     assert ranking.contributions[0].inputs == ("x3",) and ranking.may_be_overturned
     ranking_json = conclusions.fact.json["quantities"]["life"]["ranking"]
     assert ranking_json["unexplained"]["value"] == pytest.approx(0.91, abs=0.06)
-    *_, text = ranking.sentence.split("No single input explains ")
+    *_, text = ranking.sentence.split("Single inputs leave ")
     assert numbers_in(text)[0] == round(100 * ranking_json["unexplained"]["value"])
     if of_pair is np.sign:
         assert "interactions could change the order; a 'saltelli' design shows them." in text

@@ -36,5 +36,5 @@ def test_what_they_leave_open_asks_for_more_depths(some_stop):
 
 
 def test_what_a_horizon_leaves_open_asks_for_a_longer_one():
-    with pytest.raises(RunError, match="what its inspections found; run the study with a longer"):
+    with pytest.raises(RunError, match="before its inspections; run the study with a longer"):
         update(pads(300, settings={"horizon": 80.0}), [inspection("below", 60.0, time=90.0)])

@@ -167,7 +167,7 @@ def levels(
     plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
-    """Show variance components: shared inputs, differences between units, and chance."""
+    """Show variance components: shared, per unit, and chance."""
     from uq.cli.sensitivity import levels as show_levels
 
     show_levels(result, output, plain, json)

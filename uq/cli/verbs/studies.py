@@ -126,7 +126,7 @@ def plan(
     model: given.ModelReference = None,
     json: given.Json = False,
 ) -> None:
-    """Estimate run time, size and interval widths of a study from a few of its rows."""
+    """Estimate the cost and the interval widths of a study."""
     from uq.cli.check import plan as show_plan
     from uq.cli.progress import say_plain
     from uq.cli.run import loaded

@@ -150,7 +150,7 @@ def test_it_is_shown_and_printed_without_complaint(browser, tmp_path, no_other_f
 
 def test_a_design_without_statistics_is_not_advised_to_replicate(plain):
     text = plain(linear("morris", 8))
-    assert "not known: the rows of a 'morris' design do not follow the laws of the inputs;" in text
+    assert "assessed: the rows of a 'morris' design do not follow the laws of the inputs;" in text
     assert "set replicates" not in text
 
 
