@@ -13,7 +13,8 @@ Reading order; each part imports only those above it:
     guide           output of ``uq`` without a command: next steps
     models          terminal output of ``uq models``
     sensitivity     terminal output of ``uq sensitivity`` and ``uq levels``
-    summary_tables  summary of a result, also under other laws, as tables of 80 columns
+    summary_tables  summary of a result, as tables of 80 columns
+    what_if         terminal output of ``uq what-if``
     trace           terminal output of ``uq trace``
     check           terminal output of ``uq check`` and ``uq plan``, before a run
     rare_event      terminal output of ``uq rare-event``

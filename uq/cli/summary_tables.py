@@ -1,9 +1,8 @@
-"""Summary of a result, also under other laws, as tables of 80 columns."""
+"""Summary of a result, as tables of 80 columns."""
 
 from collections.abc import Iterator, Mapping
 from itertools import chain
 from math import isfinite, isnan
-from pathlib import Path
 from typing import NamedTuple
 
 from uq.assess.answer.answer import conclude
@@ -15,8 +14,7 @@ from uq.assess.statistic import Reader, Statistic
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.summary import REGIME, Described, Summary
 from uq.assess.targets import split_name
-from uq.assess.what_if import answer, read_changes, what_if_facts
-from uq.cli.printing import CELLS, console, grid, heading, note, paragraph, print_json, title
+from uq.cli.printing import CELLS, console, grid, heading, note, paragraph, title
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, failed_bounds_text, interval_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, number, percent
@@ -214,18 +212,3 @@ def _cells(estimate: Estimate | None, per: float) -> tuple[str, str]:
 
 def _example(result: Result, status: str) -> str:
     return str(result.dataset["status"].attrs.get(f"example_{status.replace('-', '_')}", ""))
-
-
-def what_if(result: Path, changes: list[str], json: bool) -> None:
-    """Print the summary of a result under other laws."""
-    opened = Result.open(result)
-    reweighted = answer(opened, read_changes(changes))
-    if json:
-        print_json(what_if_facts(reweighted).json)
-        return
-    show_summary(opened, reweighted.summary)
-    note(
-        f"What if: {'; '.join(changes)}. The same rows, weighted: worth"
-        f" {reweighted.effective_rows:.0f} independent ones"
-        + (f"; Pareto k = {reweighted.pareto_k:.2f}." if isfinite(reweighted.pareto_k) else ".")
-    )

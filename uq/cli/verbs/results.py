@@ -219,8 +219,8 @@ def what_if(
     ],
     json: given.Json = False,
 ) -> None:
-    """Reweight the rows to other laws of the inputs."""
-    from uq.cli import summary_tables as question
+    """Show what other laws of the inputs would change."""
+    from uq.cli import what_if as question
 
     question.what_if(result, set_, json)
 
