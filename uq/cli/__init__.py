@@ -13,7 +13,8 @@ Reading order; each part imports only those above it:
     guide           output of ``uq`` without a command: next steps
     models          terminal output of ``uq models``
     sensitivity     terminal output of ``uq sensitivity`` and ``uq levels``
-    summary_tables  summary and answer of a result as tables of 80 columns
+    summary_tables  card, answer and summary of a result, 80 columns wide
+    what_if         terminal output of ``uq what-if``
     trace           terminal output of ``uq trace``
     check           terminal output of ``uq check`` and ``uq plan``, before a run
     rare_event      terminal output of ``uq rare-event``

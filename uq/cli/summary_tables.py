@@ -1,4 +1,4 @@
-"""Summary and answer of a result as tables of 80 columns."""
+"""Card, answer and summary of a result, 80 columns wide."""
 
 from collections.abc import Iterator, Mapping
 from itertools import chain

@@ -1,24 +1,99 @@
 """Terminal output of ``uq what-if``."""
 
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from math import isfinite
 from pathlib import Path
 
+from uq.assess.pairing import WORST
+from uq.assess.statistic import Reader, Statistic
+from uq.assess.summary import summarise
 from uq.assess.what_if import read_changes, reweighted_summary, what_if_facts
-from uq.cli.printing import note, print_json
-from uq.cli.summary_tables import show_summary
+from uq.cli.printing import console, grid, heading, note, paragraph, print_json, title
 from uq.result.result import Result
+from uq.stats import two_samples
+from uq.stats.estimate import Estimate, rounded_text
+from uq.text.numbers import compared, estimated, in_brackets
+from uq.text.units import readable, typical, unit_of
+
+_HEADER = ("", "as studied", "changed", "difference")
+_PERCENT = 0.01
 
 
-def what_if(result: Path, changes: list[str], json: bool) -> None:
-    """Print the summary of a result under other laws."""
-    opened = Result.open(result)
-    reweighted = reweighted_summary(opened, read_changes(changes))
+def what_if(path: Path, texts: Sequence[str], json: bool) -> None:
+    """Print the statistics of a result as studied, under other laws, and their differences."""
+    result = Result.open(path)
+    changed = reweighted_summary(result, read_changes(texts))
     if json:
-        print_json(what_if_facts(reweighted).json)
+        print_json(what_if_facts(changed).json)
         return
-    show_summary(opened, reweighted.summary)
+    studied = summarise(result)
+    title(result)
+    console.print(f"What if: {'; '.join(texts)}", soft_wrap=True)
+    for name, shares in changed.summary.shares.items():
+        heading(f"\n{name}")
+        of_study = studied.shares.get(name, {})
+        pairs = [(of_study[label], share) for label, share in shares.items() if label in of_study]
+        lines = (_lines(*pair, pair[0].label, _PERCENT, " %") for pair in pairs)
+        grid(chain.from_iterable(lines), _HEADER)
+    for name, output in changed.summary.outputs.items():
+        declared = result.outputs[name.partition("[")[0]]
+        quantiles = (statistic.estimate.value for statistic in output.parts["quantiles"])
+        unit = unit_of(output.units, typical(quantiles))
+        heading(f"\n{name}{in_brackets(unit)}", readable(declared.meaning))
+        variable = compared(name, declared.is_angle)
+        table: list[Line] = []
+        for before, after in _pairs(studied.outputs[name].statistics, output.statistics):
+            asked = () if before.at is None else (before.at,)
+            label = estimated(before.label, output.units, variable, asked)
+            per = unit.size if before.unit == output.units else 1.0
+            sign = " %" if before.key[0] == "thresholds" else ""
+            table += _lines(before, after, label, _PERCENT if sign else per, sign)
+        grid(table, _HEADER)
+        for text in dict.fromkeys(text for part in output.statistics for text in part.notes):
+            paragraph(text, indent=2)
+    for text in changed.summary.notes:
+        note(text)
     note(
-        f"What if: {'; '.join(changes)}. The same rows, weighted: worth"
-        f" {reweighted.effective_rows:.0f} independent ones"
-        + (f"; Pareto k = {reweighted.pareto_k:.2f}." if isfinite(reweighted.pareto_k) else ".")
+        f"The same rows, weighted: worth {changed.effective_rows:.0f} independent ones"
+        + (f"; Pareto k = {changed.pareto_k:.2f}." if isfinite(changed.pareto_k) else ".")
+        + " Below each value is its 95 % interval, conservative for a difference: it allows for any"
+        " correlation of the two estimates. *: the interval excludes zero."
     )
+
+
+def _pairs(
+    before: Iterable[Statistic], after: Iterable[Statistic]
+) -> Iterator[tuple[Statistic, Statistic]]:
+    """Yield each number that both have, as studied and changed."""
+    changed = {statistic.key: statistic for statistic in after}
+    for statistic in before:
+        other = changed.get(statistic.key)
+        if other is not None and statistic.is_read_by(Reader.COMPARED):
+            yield statistic.best, other.best
+
+
+Line = tuple[str, ...]
+
+
+def _lines(
+    before: Statistic, after: Statistic, label: str, per: float, sign: str = ""
+) -> Iterator[Line]:
+    """Yield a line of values in a unit of size `per`, and one of their intervals."""
+    first, second = before.estimate, after.estimate
+    apart = Estimate()
+    if isfinite(first.value) and isfinite(second.value):
+        apart = two_samples.difference(first.finite, second.finite, WORST)
+    excludes = apart.low > 0 or apart.high < 0
+    cells = [*(rounded_text(estimate, per) for estimate in (first, second)), _digits(apart, per)]
+    values, ends = zip(*cells, strict=True)
+    shown = [value if value == "-" else value + sign for value in values]
+    yield label, *shown[:2], f"{shown[2]} *" if excludes else shown[2]
+    if any(ends):
+        yield "", *(end and end + sign for end in ends)
+
+
+def _digits(apart: Estimate, per: float) -> tuple[str, str]:
+    """Return a difference and its interval, to three digits: an end near zero shows its sign."""
+    value, low, high = (f"{number / per:.3g}" for number in apart.numbers)
+    return value if isfinite(apart.value) else "-", f"{low} to {high}" * apart.has_interval

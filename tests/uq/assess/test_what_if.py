@@ -246,6 +246,14 @@ def test_on_the_command_line(result, tmp_path):
     run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8"])
     assert run.exit_code == 0 and "a integrated exactly" in run.output
     assert re.search(r"worth\s+\d+\s+independent\s+ones", run.output)
+    assert re.search(r"as studied +changed +difference *\n", run.output)
+    studied = summarised(result)["outputs"]["y"]["sd"]
+    changed = what_if(result, {"uncertain.z.sd": 0.8}).loc["y", "sd"]
+    line = re.search(r"\ny +.*?\n  sd +(\S+) +(\S+) +(\S+)", run.output, re.DOTALL)
+    before, after, apart = map(float, line.groups())
+    assert before == pytest.approx(studied, abs=0.05 * studied)
+    assert after == pytest.approx(changed, abs=0.05 * studied)
+    assert apart == pytest.approx(changed - studied, rel=0.01)
     run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8", "--json"])
     document = json.loads(run.output)
     assert document["effective_rows"] < 1000 and set(document["outputs"]) == {"life", "y"}

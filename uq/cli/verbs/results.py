@@ -224,7 +224,7 @@ def what_if(
     ],
     json: given.Json = False,
 ) -> None:
-    """Reweight the rows to other laws of the inputs."""
+    """Show what other laws of the inputs would change."""
     from uq.cli import what_if as question
 
     question.what_if(result, set_, json)
