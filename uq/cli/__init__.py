@@ -20,7 +20,6 @@ Reading order; each part imports only those above it:
     rare_event      terminal output of ``uq rare-event``
     simulate        the command ``uq simulate``
     run             output of the verbs that compute rows of a result
-    what_if         terminal output of ``uq what-if``
     status          terminal output of ``uq status``, ``uq verify`` and ``uq row``
     learning        terminal output of ``uq update`` and ``uq next-inspection``
     verbs           the verbs of ``uq``: what each takes, and what it calls
