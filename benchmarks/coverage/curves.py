@@ -134,7 +134,7 @@ def _count_at(tally, curve, times):
 
 
 FEW_ENDS = "few ends: counts are discrete; without any, no band"
-FEW_AT_RISK = "few ends or few rows at risk: conservative beta products"
+FEW_AT_RISK = "few ends or few rows at risk: counts are discrete, beta products conservative"
 
 
 def _holds(curve, truth):

@@ -5,7 +5,10 @@ import math
 import re
 
 from benchmarks.coverage.chapters import CHAPTERS, OTHERS, chapter_of
-from benchmarks.coverage.tally import OURS, Line
+from benchmarks.coverage.tally import LOW, OURS, Line
+
+NAMED = 2
+"""So many intervals with the same reason are named in the list of those that cover too seldom."""
 
 HEAD = """# Coverage of the intervals
 
@@ -64,7 +67,7 @@ def page(lines, seconds, missing=()):
         chapters[chapter_of(line.problem)].append(line)
     filled = {title: chapter_lines for title, chapter_lines in chapters.items() if chapter_lines}
     texts = [_chapter(title, chapter_lines) for title, chapter_lines in filled.items()]
-    return "\n".join([HEAD, summary, _contents(filled), *texts])
+    return "\n".join([HEAD, summary, _contents(filled), _undercoverage(filled), *texts])
 
 
 def _counts(lines):
@@ -82,7 +85,37 @@ def _contents(chapters):
         for title, lines in chapters.items()
     ]
     head = ["| | as stated | more often | less often |", "| --- | ---: | ---: | ---: |"]
-    return "\n".join([*head, *rows, "", "Each line below opens a table.", ""])
+    return "\n".join([*head, *rows, ""])
+
+
+def _undercoverage(chapters):
+    """Return the list of our intervals that cover less often than stated, with the reasons."""
+    items = []
+    for title, lines in chapters.items():
+        reasons = {}
+        for line in lines:
+            if line.by == OURS and line.given and _is_off(line) and line.coverage[0] < LOW:
+                reasons.setdefault(line.reason, []).append(line)
+        for reason, low_lines in reasons.items():
+            items.append(f"- [{title}](#{_anchor(title)}): {_named(low_lines)}: {reason}")
+    if not items:
+        return "Each line below opens a table.\n"
+    head = "Intervals that cover the truth in less than 93 % of cases, and why:"
+    return "\n".join([head, "", *items, "", "Each line below opens a table.", ""])
+
+
+def _named(lines):
+    """Return how often intervals cover, with their names if there are one or two."""
+    covered = sorted(line.coverage[0] for line in lines)
+    shares = " to ".join(dict.fromkeys(f"{share:.1%}" for share in (covered[0], covered[-1])))
+    if len(lines) > NAMED:
+        return f"{len(lines)} intervals, {shares}"
+    names = "; ".join(f"{line.what} ({_capital(line.problem)})" for line in lines)
+    return f"{names}, {shares}"
+
+
+def _capital(problem):
+    return f"{problem[0].upper()}{problem[1:]}"
 
 
 def _anchor(title):
@@ -108,7 +141,7 @@ def _folded(problem, lines):
     _, more, less = _counts(lines)
     off = [f"{count} {words}" for count, words in ((more, "more"), (less, "less")) if count]
     suffix = f" ({', '.join(off)} often than stated)" if off else ""
-    name = html.escape(f"{problem[0].upper()}{problem[1:]}{suffix}", quote=False)
+    name = html.escape(f"{_capital(problem)}{suffix}", quote=False)
     head = f"<details><summary>{name}</summary>"
     return "\n".join([head, "", _table(lines), "", "</details>", ""])
 

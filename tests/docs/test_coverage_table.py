@@ -100,6 +100,7 @@ def test_what_is_off_needs_a_reason():
     assert "**mean** | uq | 50.0% (46.9% to 53.1%) | 1000 | 1.25 | a good reason |" in shown
     assert "| mean | somebody else | 0.0%" in shown
     assert "none given" in shown
+    assert "\n- [Others](#others): mean (A problem), 50.0%: a good reason\n" in shown
     assert "\n| [Others](#others) | 1 | 0 | 1 |\n" in shown and "\n## Others\n" in shown
 
 

@@ -10,7 +10,7 @@ import command
 
 from uq.execution.row_folder import history
 
-PATIENCE = 180.0
+PATIENCE = 900.0
 """How long a busy machine may take for what should take a moment [s]."""
 
 OUT = Path("results/small.nc")

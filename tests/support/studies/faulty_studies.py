@@ -2,7 +2,7 @@
 
 from in_memory import compute
 
-PATIENCE = 60.0
+PATIENCE = 600.0
 """How long a busy machine may take [s]."""
 
 FAULTY = "faulty_models:FAULTY"
