@@ -33,7 +33,7 @@ _BLOCK = re.compile(
 )
 _FILE = re.compile(r"# ([\w-]+\.\w+)\n")
 _NAMED = re.compile(r"`([\w-]+\.\w+)`:$")
-_PRINTED = re.compile(r"<!-- printed(, first paragraph)? -->$")
+_PRINTED = re.compile(r"<!-- printed(, last paragraph)? -->$")
 
 Call = Callable[[list[str]], str]
 """Runs ``uq ARGUMENTS``, and returns what it prints."""
