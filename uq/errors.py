@@ -96,5 +96,10 @@ def nearest(name: str, choices: Iterable[str], key: Callable[[str], str] = str.l
 
 
 def nearest_file(name: str, files: Iterable[str]) -> str:
-    """Return `nearest` of file names, compared without folder and ending, which they may share."""
-    return nearest(name, files, lambda file: PurePath(file).stem.lower())
+    """Return `nearest` of file names, compared without folder and ending, which they may share.
+
+    Of files that differ in their ending alone, the one with the ending of `name`.
+    """
+    ending = PurePath(name).suffix
+    ordered = sorted(files, key=lambda file: PurePath(file).suffix == ending)
+    return nearest(name, ordered, lambda file: PurePath(file).stem.lower())

@@ -19,8 +19,10 @@ def test_everything_promised_is_there():
         set(uq.__all__)
         == set(dir(uq))
         == {
+            "Study",
             "answer",
             "basins",
+            "card",
             "labels",
             "fleet",
             "levels",

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import AverageEffect, Contribution
@@ -23,6 +25,7 @@ from uq.assess.answer.wording import (
 from uq.assess.card_numbers import Headline, headlines
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
+from uq.contract import Status
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PLAIN
 from uq.stats import estimate_json
@@ -163,8 +166,8 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
         no_causes,
-        tuple(_checks(answer, plural, no_causes)),
-        tuple(_next(answer.advice)),
+        tuple(_checks(result, answer, plural, no_causes)),
+        tuple(_next(result, answer.advice)),
     )
 
 
@@ -228,11 +231,13 @@ def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator
         yield Cause(contribution, effect, shown)
 
 
-def _checks(answer: Answer, plural: str, no_causes: str) -> Iterator[str]:
+def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iterator[str]:
     enough, lead = answer.enough, answer.lead
     if answer.failed:
         share = percent(answer.failed / max(answer.rows, 1))
-        yield f"{share} of the {plural} failed and are left out"
+        codes = np.unique(result.dataset["status"].values[result.failed])
+        kinds = ", ".join(Status(code).label for code in codes)
+        yield f"{share} of the {plural} failed ({kinds}) and are left out"
     if enough.unknown:
         yield f"sample size cannot be judged: {enough.unknown}"
     elif enough.question:
@@ -260,7 +265,7 @@ def _moved(lead: Quantity | None, error: Any) -> str:
     return ""
 
 
-def _next(advice: Sequence[Advice]) -> Iterator[str]:
+def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
     """Yield each piece of advice in a few words, the most urgent first."""
     for entry in advice:
         words = called_together(entry.inputs) if entry.inputs else ""
@@ -276,7 +281,8 @@ def _next(advice: Sequence[Advice]) -> Iterator[str]:
             case "rows" if entry.rows is not None:
                 yield f"compute about {grouped(entry.rows)} rows"
             case "failed":
-                yield "fix the failed rows"
+                again = f"uq rerun {result.file} --failed{result.model_option}"
+                yield f"fix the failed rows, then {again}"
             case "finer":
                 yield "compute more accurate rows, not more"
             case "keep":

@@ -48,11 +48,13 @@ def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
         "Independent input: factor on x1",
     ]
     for axes in figure.axes:
-        sampled, stated = (patch.get_data().values for patch in axes.patches)
+        sampled, stated = (  # densities: the area is 1
+            patch.get_data().values * np.diff(patch.get_data().edges) for patch in axes.patches
+        )
         np.testing.assert_allclose(sampled, stated, atol=2e-3)
         assert stated.sum() == pytest.approx(1, abs=1e-3)
     bell = figure.axes[0].patches[1].get_data()
-    law = np.diff(stats.norm(0.5, 0.05).cdf(bell.edges))
+    law = np.diff(stats.norm(0.5, 0.05).cdf(bell.edges)) / np.diff(bell.edges)
     np.testing.assert_allclose(bell.values, law, rtol=1e-6)
     (alone,) = plots.inputs(computed(study_of(tables(entries, "sobol", 64))), names=["x2"]).axes
     assert alone.get_xlabel() == "Independent input: factor on x1"

@@ -106,11 +106,11 @@ def test_basins_and_figures_refuse_too(uq, drawn_once, folder):
     with pytest.raises(InputError, match=f"^node: is {what}, not a file; "):
         api.basins(sample_models.KINDS, axes, output="node")
     assert "morris-y.png" in uq("plot", drawn_once, "-o", "figures").out
-    (folder / "figures" / "morris-y.svg").unlink()
-    what = fifo(folder / "figures" / "morris-y.svg")
+    (folder / "figures" / "morris-y.png").unlink()
+    what = fifo(folder / "figures" / "morris-y.png")
     ended = uq("plot", drawn_once, "-o", "figures")
     assert (ended.code, ended.err.count("\n")) == (2, 1)
-    assert ended.err.startswith(f"figures/morris-y.svg: is {what}, not a file; ")
+    assert ended.err.startswith(f"figures/morris-y.png: is {what}, not a file; ")
     assert uq("plot", drawn_once, "-o", "node").code == 2
 
 

@@ -131,11 +131,7 @@ def test_measures_stand_in_arrays_tables_and_figures(uq, write_study, folder):
     shown = uq("sensitivity", "results/screening.nc").out
     assert "mu_star" in shown and "sigma" in shown
     drawn = uq("plot", "results/screening.nc").out.split()
-    assert [name.rpartition("/")[2] for name in sorted(drawn)] == [
-        "morris-y.pdf",
-        "morris-y.png",
-        "morris-y.svg",
-    ]
+    assert [name.rpartition("/")[2] for name in drawn] == ["morris-y.png"]
 
 
 def test_the_template_names_the_designs(uq):

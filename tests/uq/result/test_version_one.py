@@ -30,7 +30,9 @@ VERBS = [
 def test_a_summary_of_version_one_has_the_same_numbers(kind, uq, folder):
     expected = json.loads((KEPT / f"{kind}.json").read_text())
     shutil.copy(KEPT / f"{kind}.nc", f"{kind}.nc")
-    assert json.loads(uq("summary", f"{kind}.nc", "--json").out) == expected
+    shown = json.loads(uq("summary", f"{kind}.nc", "--json").out)
+    assert shown.pop("card")["rows"] == expected["answer"]["rows"]
+    assert shown == expected
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -295,10 +295,10 @@ def _thresholds_named(
             if statistic.at == asked and statistic.key[-1] == side
         ]
         if chosen[0].is_angle and at < 0:
-            text = minus(f"-{text}")
+            text = f"-{text}"
         elif 0 < len(shares) <= _MOST_SHARES and np.isfinite(shares).all():
             text = f"{' and '.join(map(percent, shares))} {words} {text}"
-        names.append(LineLabel(at, text, LIMIT))
+        names.append(LineLabel(at, minus(text), LIMIT))
     return names
 
 

@@ -42,9 +42,9 @@ def leading_outputs(findings: Findings) -> tuple[str, ...]:
     """Return the outputs that the study is about, its subject first."""
     declared = findings.result.outputs
     ordered = by_importance(findings.result, findings.result.analysis)
-    return tuple(
-        name for name in ordered if not declared[name].is_category and name not in findings.absent
-    )[:_MOST_OUTPUTS]
+    absent = findings.absent if len(findings.rows) else ()
+    numbers = (name for name in ordered if not declared[name].is_category and name not in absent)
+    return tuple(numbers)[:_MOST_OUTPUTS]
 
 
 def the_first(findings: Findings, names: Sequence[str]) -> Iterator[FigureSubject]:
@@ -72,7 +72,8 @@ def leading_categories(findings: Findings, names: Sequence[str]) -> Iterator[Fig
 def indices_of_the_first(findings: Findings, names: Sequence[str]) -> Iterator[FigureSubject]:
     """Yield the target that ranks the inputs of the first of the leading outputs."""
     for output in names[:1]:
-        method = method_for(findings.result, event=False)
+        able = [method_for(findings.result, event=False), *methods(findings.result)]
+        method = next(filter(None, able), None)
         if method is None:
             continue
         target = number_of(findings.result.named_elements(output)[0])
