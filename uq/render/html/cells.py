@@ -15,7 +15,7 @@ STYLE = Markup("""
 .bar { display: block; position: relative; height: .9rem; background: rgba(127, 127, 127, .15);
   -webkit-print-color-adjust: exact; print-color-adjust: exact; }
 .bar > * { position: absolute; top: 0; bottom: 0; }
-.bar-fill { background: #6b7580; }
+.bar-fill { background: #4a7ba6; }
 .bar-ends { border: solid currentColor; border-width: 0 1px; }
 .bar-ends::before { content: ""; position: absolute; left: 0; right: 0;
   top: calc(50% - .5px); border-top: 1px solid currentColor; }
