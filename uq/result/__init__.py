@@ -12,5 +12,6 @@ Reading order; each part imports only those above it:
     elements     the elements of a result's outputs
     workload     workload: rows of one model to compute, and running statistics of arriving rows
     result       a result: the Dataset of its rows, with its attributes parsed once
+    row_table    rows of a result as one flat table, written as CSV or Parquet
     row_choice   selection of a row of a result, and its values as plain numbers
 """

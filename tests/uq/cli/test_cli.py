@@ -15,7 +15,7 @@ from uq.cli.printing import print_json
 GROUPS = {
     "Start": "models init simulate schema serve",
     "Run": "plan run status extend rerun",
-    "Read": "summary sensitivity levels twin plot report",
+    "Read": "summary sensitivity levels twin export plot report",
     "Decide": "compare what-if fleet rare-event",
     "Learn": "update next-inspection",
     "Check": "check convergence verify row trace",

@@ -139,6 +139,23 @@ def summary(
     _warn_if_altered(result)
 
 
+def export(
+    result: given.ResultFile,
+    csv: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Comma-separated, units in the headings.")
+    ] = None,
+    parquet: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Parquet; needs pyarrow.")
+    ] = None,
+) -> None:
+    """Write the rows as a table: inputs, outputs, status."""
+    from uq.result.result import Result
+    from uq.result.row_table import write_rows
+
+    for file in write_rows(Result.open(result), csv, parquet):
+        print(file)
+
+
 def sensitivity(
     result: given.ResultFile,
     output: Annotated[

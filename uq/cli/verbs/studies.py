@@ -65,10 +65,26 @@ def init(
         str | None,
         typer.Option(metavar="NAME", help="Write a folder with a machine of your own instead."),
     ] = None,
+    from_: Annotated[
+        str | None, typer.Option("--from", metavar="STUDY", help="Print a variant of this study.")
+    ] = None,
+    design: Annotated[
+        str | None, typer.Option(metavar="METHOD", help="With --from: another design.")
+    ] = None,
+    name: Annotated[str | None, typer.Option(metavar="NAME", help="With --from: its name.")] = None,
+    own_model: given.ModelReference = None,
 ) -> None:
     """Print a study file to edit, or write a new machine."""
-    if (model is None) == (machine is None):
-        raise InputError("uq: give one of MODEL and --machine NAME")
+    if [model, machine, from_].count(None) != 2:
+        raise InputError("uq init: give one of MODEL, --from STUDY and --machine NAME")
+    if from_ is None and (design or name or own_model):
+        raise InputError("uq init: --design, --name and --model go with --from STUDY")
+    if from_ is not None:
+        from uq.execution.loading import load_study
+        from uq.study.variant import variant
+
+        print(variant(load_study(from_, own_model), design, name), end="")
+        return
     if machine is not None:
         from uq.cli.models import write_machine
 
