@@ -43,9 +43,9 @@ def row_table(result: Result) -> "pd.DataFrame":
     for name in _OF_DESIGN:
         if name in ds and np.ptp(ds[name].values):
             columns[name] = ds[name].values
-    for name in ds.data_vars:
-        if ds[name].attrs.get("role") == "input":
-            columns[_heading(result, str(name))] = ds[name].values
+    for variable in map(str, ds.data_vars):
+        if ds[variable].attrs.get("role") == "input":
+            columns[_heading(result, variable)] = ds[variable].values
     for name in result.output_names:
         columns |= dict(_columns(result, name))
     return pd.DataFrame(columns, index=pd.Index(ds["row"].values, name="row"))
@@ -58,9 +58,10 @@ def _columns(result: Result, output: str) -> Iterator[tuple[str, Any]]:
     flag = result.dataset.get(censored_name(output))
     coordinates = {str(dim): variable[dim].values for dim in variable.dims[1:]}
     for name, index, _ in places(output, coordinates):
-        yield _heading(result, output, name), values.values[:, *index]
-        if flag is not None and flag.values[:, *index].any():
-            yield f"{name}_censored", flag.values[:, *index].astype(bool)
+        place: Any = (..., *index)
+        yield _heading(result, output, name), values.values[place]
+        if flag is not None and flag.values[place].any():
+            yield f"{name}_censored", flag.values[place].astype(bool)
 
 
 def _heading(result: Result, name: str, element: str = "") -> str:
