@@ -44,6 +44,7 @@ ON_A_RESULT = {
     "next_inspection": [("--inspect", "life")],
     "twin": [()],
     "trace": [("outputs/life/mean",)],
+    "export": [("--csv", "rows.csv")],
     "plot": [()],
     "report": [(), ("--dossier", "-o", "dossier.html")],
 }
