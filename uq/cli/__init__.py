@@ -6,6 +6,7 @@ Reading order; each part imports only those above it:
 
     printing        text, numbers and tables on a terminal, and JSON
     progress        the progress of a run
+    completion      words with which a shell completes an argument or the value of an option
     options         arguments and options shared by several verbs of ``uq``, with their help
     streams         standard streams that are closed, full or lack characters
     compare         the output of ``uq compare``

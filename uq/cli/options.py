@@ -5,13 +5,12 @@ from typing import Annotated
 
 import typer
 
-
-def complete_model(incomplete: str) -> list[str]:
-    """Return the names with which a shell may complete a word."""
-    from uq.study.installed_models import model_names
-
-    return [name for name in model_names() if name.startswith(incomplete)]
-
+from uq.cli.completion import (
+    complete_model,
+    complete_output,
+    complete_result,
+    complete_study,
+)
 
 ModelName = Annotated[
     str,
@@ -21,8 +20,14 @@ ModelName = Annotated[
         autocompletion=complete_model,
     ),
 ]
-StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
-ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
+StudyFile = Annotated[
+    str,
+    typer.Argument(metavar="STUDY", help="A study file (TOML).", autocompletion=complete_study),
+]
+ResultFile = Annotated[
+    Path,
+    typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.", autocompletion=complete_result),
+]
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
 Explain = Annotated[bool, typer.Option("--explain", help="Show the answer in sentences.")]
 Full = Annotated[bool, typer.Option("--full", help="Show statistics of each output.")]
@@ -54,7 +59,10 @@ Mixed = Annotated[
     bool, typer.Option("--mixed", help="Keep rows from another version of the model.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
-OnlyOutput = Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")]
+OnlyOutput = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help="Only this output.", autocompletion=complete_output),
+]
 Times = Annotated[
     list[str] | None,
     typer.Option(metavar="T", help='Time in the unit of the life, or such as "30 days".'),

@@ -1,6 +1,23 @@
 """What a shell completes when somebody presses the tabulator."""
 
+from pathlib import Path
+
 import pytest
+
+from uq.execution import runner
+
+LAW = 'distribution = "lognormal", median = 2.5e-10, sigma = 0.5'
+
+
+@pytest.fixture
+def a_study_and_its_result(folder, write_study):
+    """Put a study and its result where people keep them."""
+    path = write_study("exponential-wear", samples=16, uncertain=["rate"], law=LAW)
+    for name in ("studies", "results", "elsewhere"):
+        (folder / name).mkdir()
+    study = Path(path).rename(folder / "studies" / "wear.toml")
+    runner.run(study, folder / "results" / "wear.nc", workers=0)
+    return study
 
 
 @pytest.mark.parametrize(
@@ -11,12 +28,29 @@ import pytest
         ("uq models be", ["beam"]),
         ("uq simulate expo", ["exponential-wear"]),
         ("uq init nothing", []),
+        ("uq check ", ["studies/wear.toml"]),
+        ("uq run st", ["studies/wear.toml"]),
+        ("uq run ./studies/w", ["./studies/wear.toml"]),
+        ("uq run {folder}/studies/w", ["{folder}/studies/wear.toml"]),
+        ("uq run elsewhere/", []),
+        ("uq init --from s", ["studies/wear.toml"]),
+        ("uq init --from studies/wear.toml --design sal", ["saltelli"]),
+        ("uq rare-event studies/wear.toml --output ", ["life"]),
+        ("uq summary r", ["results/wear.nc"]),
+        ("uq compare results/wear.nc results/", ["results/wear.nc"]),
+        ("uq update results/w", ["results/wear.nc"]),
+        ("uq sensitivity results/wear.nc --method sob", ["sobol"]),
+        ("uq sensitivity results/wear.nc --output l", ["life"]),
+        ("uq sensitivity missing.nc --output l", []),
+        ("uq plot results/wear.nc --only hist", ["histogram"]),
     ],
 )
-def test_a_shell_completes_verbs_options_and_models(uq, monkeypatch, typed, completed):
+def test_a_shell_completes(uq, folder, a_study_and_its_result, monkeypatch, typed, completed):
+    typed = typed.format(folder=folder)
+    completed = [word.format(folder=folder) for word in completed]
     monkeypatch.setenv("_UQ_COMPLETE", "complete_bash")
     monkeypatch.setenv("COMP_WORDS", typed)
-    monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - 1))
+    monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - (not typed.endswith(" "))))
     ended = uq()
     assert (ended.code, ended.out.split(), ended.err) == (0, completed, "")
     monkeypatch.setenv("_UQ_COMPLETE", "source_bash")

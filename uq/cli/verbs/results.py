@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from uq.cli import completion, streams
 from uq.cli import options as given
-from uq.cli import streams
 from uq.errors import InputError
 from uq.execution.options import RunOptions
 from uq.text.literals import plain_line
@@ -79,7 +79,12 @@ def row(
         int | None, typer.Argument(min=0, metavar="N", help="Number of the row, from 0.")
     ] = None,
     lowest: Annotated[
-        str | None, typer.Option(metavar="OUTPUT", help="The row with the lowest value.")
+        str | None,
+        typer.Option(
+            metavar="OUTPUT",
+            help="The row with the lowest value.",
+            autocompletion=completion.complete_output,
+        ),
     ] = None,
     near_quantile: Annotated[
         tuple[float, str] | None,
@@ -160,9 +165,18 @@ def sensitivity(
     result: given.ResultFile,
     output: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Only this output, or log(NAME), rank(NAME), ... of it."),
+        typer.Option(
+            metavar="NAME",
+            help="Only this output, or log(NAME), rank(NAME), ... of it.",
+            autocompletion=completion.complete_output,
+        ),
     ] = None,
-    method: Annotated[str | None, typer.Option(metavar="M", help="Default: the study's.")] = None,
+    method: Annotated[
+        str | None,
+        typer.Option(
+            metavar="M", help="Default: the study's.", autocompletion=completion.complete_method
+        ),
+    ] = None,
     regime: given.Regime = None,
     json: given.Json = False,
 ) -> None:
@@ -201,7 +215,10 @@ def fleet(
         ),
     ] = None,
     allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
-    output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="The life.", autocompletion=completion.complete_output),
+    ] = None,
     plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
@@ -223,8 +240,20 @@ def convergence(
 
 
 def compare(
-    first: Annotated[Path, typer.Argument(metavar="A.nc", help="A result of 'uq run'.")],
-    second: Annotated[Path, typer.Argument(metavar="B.nc", help="Another, of the same model.")],
+    first: Annotated[
+        Path,
+        typer.Argument(
+            metavar="A.nc", help="A result of 'uq run'.", autocompletion=completion.complete_result
+        ),
+    ],
+    second: Annotated[
+        Path,
+        typer.Argument(
+            metavar="B.nc",
+            help="Another, of the same model.",
+            autocompletion=completion.complete_result,
+        ),
+    ],
     json: given.Json = False,
 ) -> None:
     """Show how two studies of one model differ."""
@@ -280,11 +309,21 @@ def plot(
     ] = None,
     only: Annotated[
         list[str] | None,
-        typer.Option("--only", metavar="NAME", help="A kind of figure, or the name of a file."),
+        typer.Option(
+            "--only",
+            metavar="NAME",
+            help="A kind of figure, or the name of a file.",
+            autocompletion=completion.complete_figure,
+        ),
     ] = None,
     outputs: Annotated[
         list[str] | None,
-        typer.Option("--output", metavar="OUTPUT", help="Figures of this output."),
+        typer.Option(
+            "--output",
+            metavar="OUTPUT",
+            help="Figures of this output.",
+            autocompletion=completion.complete_output,
+        ),
     ] = None,
     every: Annotated[bool, typer.Option("--all", help="Every figure, of every output.")] = False,
     formats: Annotated[
@@ -360,7 +399,12 @@ def _warn_if_altered(path: Path) -> None:
 
 def update(
     source: Annotated[
-        Path, typer.Argument(metavar="STUDY|OUT.nc", help="A study (TOML), or a result.")
+        Path,
+        typer.Argument(
+            metavar="STUDY|OUT.nc",
+            help="A study (TOML), or a result.",
+            autocompletion=completion.complete_study_or_result,
+        ),
     ],
     inspections: Annotated[
         Path, typer.Argument(metavar="INSPECTIONS.csv", help="What was measured.")
@@ -403,14 +447,24 @@ def update(
 def next_inspection(
     result: given.ResultFile,
     inspect: Annotated[
-        str, typer.Option(metavar="OUTPUT", help="What to inspect, such as 'depth'.")
+        str,
+        typer.Option(
+            metavar="OUTPUT",
+            help="What to inspect, such as 'depth'.",
+            autocompletion=completion.complete_output,
+        ),
     ],
     at: given.Times = None,
     units: Annotated[
         list[int] | None, typer.Option(min=1, metavar="N", help="How many more units.")
     ] = None,
     cv: Annotated[float, typer.Option(min=0.0, help="Error of the measurement.")] = 0.1,
-    life: Annotated[str | None, typer.Option(metavar="NAME", help="The life to narrow.")] = None,
+    life: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="The life to narrow.", autocompletion=completion.complete_output
+        ),
+    ] = None,
     json: given.Json = False,
 ) -> None:
     """Estimate the worth of inspecting more units."""

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from uq.cli import completion, say_when_interrupted
 from uq.cli import options as given
-from uq.cli import say_when_interrupted
 from uq.errors import InputError
 from uq.execution.options import RunOptions
 
@@ -17,7 +17,7 @@ from uq.execution.options import RunOptions
 def models(
     name: Annotated[
         str | None,
-        typer.Argument(help="Show this model in full.", autocompletion=given.complete_model),
+        typer.Argument(help="Show this model in full.", autocompletion=completion.complete_model),
     ] = None,
     json: given.Json = False,
 ) -> None:
@@ -59,17 +59,28 @@ def simulate(
 def init(
     model: Annotated[
         str | None,
-        typer.Argument(metavar="MODEL", help="A model.", autocompletion=given.complete_model),
+        typer.Argument(metavar="MODEL", help="A model.", autocompletion=completion.complete_model),
     ] = None,
     machine: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Write a folder with a machine of your own instead."),
     ] = None,
     from_: Annotated[
-        str | None, typer.Option("--from", metavar="STUDY", help="Print a variant of this study.")
+        str | None,
+        typer.Option(
+            "--from",
+            metavar="STUDY",
+            help="Print a variant of this study.",
+            autocompletion=completion.complete_study,
+        ),
     ] = None,
     design: Annotated[
-        str | None, typer.Option(metavar="METHOD", help="With --from: another design.")
+        str | None,
+        typer.Option(
+            metavar="METHOD",
+            help="With --from: another design.",
+            autocompletion=completion.complete_design,
+        ),
     ] = None,
     name: Annotated[str | None, typer.Option(metavar="NAME", help="With --from: its name.")] = None,
     own_model: given.ModelReference = None,
@@ -190,7 +201,14 @@ def run(
 
 def rare_event(
     study: given.StudyFile,
-    output: Annotated[str, typer.Option(metavar="NAME", help="Output, or one of its elements.")],
+    output: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="Output, or one of its elements.",
+            autocompletion=completion.complete_output,
+        ),
+    ],
     above: Annotated[
         str | None, typer.Option(metavar="T", help="Probability of exceeding T.")
     ] = None,
