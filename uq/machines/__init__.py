@@ -5,6 +5,7 @@ Reading order; each part imports only those above it:
     compilation      detect compilation by numba, which may take a while
     returned         outputs of a function
     row_resources    resources of a row of a program
+    study_defaults   what a machine proposes to a new study of it
     row_by_row       rows computed one after the other by a function of numbers that returns a
     um_bridge        the protocol of UM-Bridge models [1]_
     function         plain function as a machine, row by row or compiled by numba

@@ -69,7 +69,7 @@ def fmu_of(path: Path) -> Model:
     batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep, False)
     title = machine.title or description.description or description.modelName
     about = machine.name, title, machine.version
-    return model_from(*about, fields, returned, batch, False, machine.row_name)
+    return model_from(*about, fields, returned, batch, False, file.defaults)
 
 
 def code_of_fmu(path: Path) -> str:

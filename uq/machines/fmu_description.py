@@ -19,7 +19,7 @@ from pydantic import Field, model_validator
 from uq.errors import InputError, described
 from uq.files.whole_files import file_there
 from uq.machines.machine_file import MachineName, Name, TomlTable
-from uq.machines.row_by_row import ROW_NAME
+from uq.machines.study_defaults import ROW_NAME, Headline, RowName, StudyDefaults, Uncertain
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -31,7 +31,8 @@ class FmuTable(TomlTable):
     fmu: Annotated[str, Field(min_length=1, description="file, beside this one")]
     title: str = ""
     version: str = "1"
-    row_name: Annotated[list[str], Field(description="singular and plural of a row")] = [*ROW_NAME]
+    row_name: RowName = [*ROW_NAME]
+    headline: Headline = []
     stop: Annotated[Positive | None, Field(description="end of the simulation [s]")] = None
     step: Annotated[Positive | None, Field(description="time between values [s]")] = None
 
@@ -83,6 +84,12 @@ class FmuFile(TomlTable):
     machine: FmuTable
     parameters: dict[Name, FmuParameterTable] = {}
     outputs: dict[Name, FmuOutputTable] = {}
+    uncertain: Uncertain = {}
+
+    @property
+    def defaults(self) -> StudyDefaults:
+        """What it proposes to a new study."""
+        return StudyDefaults(self.machine.row_name, self.machine.headline, self.uncertain)
 
 
 _VERSION = "2.0"

@@ -2,7 +2,7 @@
 
 import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from inspect import signature
 from math import inf
@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Model, Parameter
 from uq.errors import InputError
 from uq.machines.returned import Returned, read_returns
-from uq.machines.row_by_row import ROW_NAME, SEED, Fields, RowByRow, model_from
+from uq.machines.row_by_row import SEED, Fields, RowByRow, model_from
+from uq.machines.study_defaults import ROW_NAME, StudyDefaults
 
 
 def is_compiled(function: Callable[..., Any]) -> bool:
@@ -160,6 +161,8 @@ def machine(
     title: str = "",
     version: str = "1",
     row_name: tuple[str, str] = ROW_NAME,
+    headline: Sequence[str] = (),
+    uncertain: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Callable[[F], F]: ...
 def machine(
     function: Any = None,
@@ -168,6 +171,8 @@ def machine(
     title: str = "",
     version: str = "1",
     row_name: tuple[str, str] = ROW_NAME,
+    headline: Sequence[str] = (),
+    uncertain: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Any:
     """Make a plain function a machine that studies can run.
 
@@ -189,6 +194,10 @@ def machine(
         in its source.
     row_name : tuple of str
         Singular and plural of what a row represents, as cards name it: ``("pump", "pumps")``.
+    headline : sequence of str
+        Outputs that a new study (`uq init`) reports, the most important first.
+    uncertain : dict of str to dict, optional
+        Argument -> its law in a new study, with the keys of ``[uncertain.NAME]`` in a study file.
 
     Returns
     -------
@@ -215,7 +224,8 @@ def machine(
             )
         if kind := next((word for test, word in _UNFIT if test(function)), ""):
             raise InputError(f"machine '{plain.__name__}': {kind}")
-        setattr(function, _MARK, (returns, title, version, row_name))
+        defaults = StudyDefaults(row_name, headline, uncertain or {})
+        setattr(function, _MARK, (returns, title, version, defaults))
         return function
 
     return mark if function is None else mark(function)
@@ -240,7 +250,7 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     InputError
         When its arguments or declarations cannot be used.
     """
-    returns, title, version, row_name = getattr(function, _MARK)
+    returns, title, version, defaults = getattr(function, _MARK)
     plain = _plain(function)
     name = plain.__name__
     label = f"machine '{name}'"
@@ -249,7 +259,7 @@ def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | No
     title = title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
     kind = Compiled if is_compiled(function) else RowByRow
     batch = kind(function, tuple(fields), outputs, wants_seed)
-    return model_from(name, title, version, fields, outputs, batch, wants_seed, row_name)
+    return model_from(name, title, version, fields, outputs, batch, wants_seed, defaults)
 
 
 def _plain(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -14,7 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from uq.errors import InputError, nearest, one_line
 from uq.files.whole_files import file_there, node
-from uq.machines.row_by_row import ROW_NAME, SEED
+from uq.machines.row_by_row import SEED
+from uq.machines.study_defaults import ROW_NAME, Headline, RowName, StudyDefaults, Uncertain
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
 
@@ -114,7 +115,8 @@ class MachineTable(TomlTable):
     command: Annotated[list[str], Field(min_length=1, description="program and arguments")]
     title: str = ""
     version: str = "1"
-    row_name: Annotated[list[str], Field(description="singular and plural of a row")] = [*ROW_NAME]
+    row_name: RowName = [*ROW_NAME]
+    headline: Headline = []
     template: Annotated[str, Field(description="file whose {places} are filled")] = ""
     input: Annotated[str, Field(description="name of the filled template")] = "input.txt"
     files: Annotated[list[str], Field(description="what else counts as its code")] = []
@@ -175,6 +177,12 @@ class MachineFile(TomlTable):
     machine: MachineTable
     parameters: Annotated[dict[Name, ParameterTable], Field(min_length=1)]
     outputs: Annotated[dict[Name, OutputTable], Field(min_length=1)]
+    uncertain: Uncertain = {}
+
+    @property
+    def defaults(self) -> StudyDefaults:
+        """What it proposes to a new study."""
+        return StudyDefaults(self.machine.row_name, self.machine.headline, self.uncertain)
 
 
 def read_machine(path: Path) -> MachineFile:

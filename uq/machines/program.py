@@ -78,7 +78,7 @@ def program_of(path: Path) -> Model:
     batch = RowByRow(runner, tuple(inputs), returned, True, folders.leave, folders.keep)
     title = machine.title or machine.name
     about = machine.name, title, machine.version
-    return model_from(*about, inputs, returned, batch, random, machine.row_name)
+    return model_from(*about, inputs, returned, batch, random, read.defaults)
 
 
 def code_of_program(path: Path) -> str:

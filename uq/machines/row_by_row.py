@@ -2,9 +2,8 @@
 
 import keyword
 import os
-import re
 from collections import namedtuple
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
@@ -16,13 +15,11 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Model, Parameter, Status, censored_name
 from uq.errors import InputError, described
 from uq.machines.returned import Returned, RowError, checked, dimensions
+from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import unknown
 from uq.text.quantities import fault_of_unit
 
-ROW_NAME = ("run", "runs")
-"""Singular and plural of what a row represents, by default."""
-
-_WORDS = re.compile(r"[^\W\d_]([\w -]{0,20}\w)?")
+NONE = StudyDefaults()
 
 SEED = "seed"
 """Name of the argument that receives the seed of a row."""
@@ -43,7 +40,7 @@ def model_from(
     returned: Mapping[str, Returned],
     batch: "RowByRow",
     random: bool,
-    row_name: Sequence[str] = ROW_NAME,
+    defaults: StudyDefaults = NONE,
 ) -> Model:
     """Return a model without settings; arguments as those of `uq.contract.Model`.
 
@@ -54,7 +51,8 @@ def model_from(
     """
     checks = _nominal_faults, _name_faults, _unit_faults, _scale_faults
     faults = [fault for check in checks for fault in check(fields, returned)]
-    if faults := [*faults, *_row_name_faults(row_name)]:
+    parameters = {field: parameter for field, (parameter, _) in fields.items()}
+    if faults := [*faults, *defaults.faults(parameters, returned)]:
         raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
     nominal = [value for _, value in fields.values()]
     made: Any = namedtuple("Parameters", fields, defaults=nominal)  # type: ignore[misc]
@@ -72,16 +70,10 @@ def model_from(
         batch,
         coordinates=lambda settings: axes,
         random=random,
-        row_name=(row_name[0], row_name[1]),
+        headline=tuple(defaults.headline),
+        row_name=(defaults.row_name[0], defaults.row_name[1]),
+        uncertain=defaults.uncertain,
     )
-
-
-def _row_name_faults(names: Any) -> Iterator[str]:
-    are_words = isinstance(names, list | tuple) and all(
-        isinstance(name, str) and _WORDS.fullmatch(name) for name in names
-    )
-    if not are_words or len(names) != 2:
-        yield f"row_name = {names!r}: must be a singular and a plural, such as ('pump', 'pumps')"
 
 
 def _nominal_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import tomllib
 
 import numpy as np
 import pytest
@@ -230,3 +231,46 @@ def test_names_of_a_row_that_are_no_words_are_refused(uq, write_function, names)
     ended = uq("check", "own.toml", "--model", file)
     assert ended.code == 2
     assert "row_name" in ended.err and "a singular and a plural" in ended.err
+
+
+DEFAULTS = """
+import uq
+@uq.machine(
+    returns={"energy": "J", "life": uq.Returned("s", life=True)},
+    headline=("life",),
+    uncertain={"load": {"distribution": "normal", "mean": 1.5, "sd": 0.1, "source": "weighed"}},
+)
+def pad(depth: float = 3.0, load: float = 1.5): return {"life": depth / load, "energy": load}
+"""
+
+
+def test_a_new_study_has_the_laws_and_outputs_that_the_machine_proposes(uq, folder, write_function):
+    file = write_function(DEFAULTS)
+    text = uq("init", file).out
+    study = tomllib.loads(text)
+    assert study["uncertain"] == {
+        "load": {"distribution": "normal", "mean": 1.5, "sd": 0.1, "source": "weighed"}
+    }
+    assert study["analysis"]["outputs"] == ["life"]
+    (folder / "new.toml").write_text(text)
+    ended = uq("run", "new.toml", "--model", file, "--samples", 64, "--workers", 0)
+    assert (ended.code, ended.err) == (0, "")
+    assert "95/95 life" in ended.out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ('("life",)', '("live",)', "headline: 'live': no such output; did you mean 'life'?"),
+        ('("life",)', '"life"', "headline = 'life': must be a list of outputs"),
+        ('"load": {', '"lead": {', "uncertain: 'lead': no such parameter; did you mean 'load'?"),
+        ('"normal"', '"norml"', "uncertain: load: needs a distribution; did you mean 'normal'?"),
+        ('"sd": 0.1', '"sd": -0.1', "uncertain: load: sd must be greater than 0"),
+        ('"sd": 0.1', '"sigma": 0.1', "uncertain: load: sd is missing"),
+    ],
+)
+def test_a_proposal_that_cannot_be_used_is_refused(uq, write_function, old, new, sentence):
+    ended = uq("init", write_function(DEFAULTS.replace(old, new, 1)))
+    assert (ended.code, ended.out) == (2, "")
+    assert sentence in ended.err
+    assert "Traceback" not in ended.err

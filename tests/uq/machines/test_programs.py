@@ -1,5 +1,6 @@
 """A program as a machine: what a study makes of it, and what is wrong with its file."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -120,6 +121,20 @@ def test_a_mistake_in_a_machine_file_is_one_line(uq, write_program, change):
     assert (ended.code, ended.out) == (2, "")
     assert MISTAKES[change] in ended.err
     assert all("machine" in line for line in ended.err.splitlines())
+
+
+def test_a_machine_file_proposes_laws_and_outputs_to_a_new_study(uq, write_program):
+    proposal = '[uncertain.load]\ndistribution = "uniform"\nlower = 0.5\nupper = 1.0\n'
+    headline = 'headline = ["life"]\nrow_name = ["pad", "pads"]\n'
+    write_program(text=PAD.replace("[machine]\n", f"[machine]\n{headline}") + proposal)
+    study = tomllib.loads(uq("init", "machine.toml").out)
+    assert study["uncertain"]["load"] | {"source": ""} == {
+        "distribution": "uniform",
+        "lower": 0.5,
+        "upper": 1.0,
+        "source": "",
+    }
+    assert study["analysis"]["outputs"] == ["life"]
 
 
 def test_a_parameter_that_is_a_word_of_python_is_one_line(uq, write_program):
