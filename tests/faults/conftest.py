@@ -1,7 +1,10 @@
 """Real runs of the command line in processes of their own, which can be killed."""
 
 import multiprocessing
+import os
+import sys
 from collections import Counter
+from multiprocessing import forkserver
 
 import pytest
 from faulty_studies import FAULTY
@@ -67,6 +70,10 @@ OUTCOMES = {
 def context():
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["command"])
+    with pytest.MonkeyPatch.context() as patch:
+        # Python 3.11 does not hand its path to the server, which then silently preloads nothing.
+        patch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
+        forkserver.ensure_running()
     return context
 
 
