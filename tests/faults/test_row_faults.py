@@ -95,7 +95,7 @@ def test_a_time_limit_needs_a_process_to_stop(uq, study_of):
 
 
 def test_too_many_failed_rows_are_an_exit_code_after_the_result(uq, study_of, folder):
-    study = study_of("linear", samples=20, fail_how="exit", fail_above=0.6)
+    study = study_of("linear", samples=4, fail_how="exit", fail_above=0.6)
     ended = uq("run", study.path, "--workers", 1)
     assert ended.code == 1
     assert "crashed" in ended.out
