@@ -24,6 +24,7 @@ from uq.assess.answer.wording import (
 )
 from uq.assess.card_numbers import Headline, headlines
 from uq.assess.findings import Findings
+from uq.assess.stopping import why_ended_in_brief
 from uq.assess.summary import REGIME
 from uq.contract import Status
 from uq.result.result import Result
@@ -146,8 +147,6 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
     no_causes = ""
     if ranking is not None and not causes:
         no_causes = ranking.reason or "no input contributes measurably"
-    row_name = str(attrs.get("row_name", "")).split("/")
-    singular, plural = row_name if len(row_name) == 2 else ("run", "runs")
     return Card(
         result.study.study.name,
         str(attrs["title"]),
@@ -157,7 +156,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         result.design_name,
         answer.rows,
         answer.failed,
-        (singular, plural),
+        result.row_name,
         tuple(headlines(findings, answer)),
         () if lead is None else lead.scaled_by,
         _assumptions(result, causes),
@@ -166,7 +165,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
         no_causes,
-        tuple(_checks(result, answer, plural, no_causes)),
+        tuple(_checks(result, answer, result.row_name[1], no_causes)),
         tuple(_next(result, answer.advice)),
     )
 
@@ -238,6 +237,9 @@ def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iter
         codes = np.unique(result.dataset["status"].values[result.failed])
         kinds = ", ".join(Status(code).label for code in codes)
         yield f"{share} of the {plural} failed ({kinds}) and are left out"
+    design = result.study.design
+    if design.until is not None and not (result.has_weights or result.why_no_statistics):
+        yield why_ended_in_brief(design, result)
     if enough.unknown:
         yield f"sample size cannot be judged: {enough.unknown}"
     elif enough.question:

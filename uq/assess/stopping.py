@@ -27,7 +27,7 @@ from uq.stats.estimate import NOTHING, Estimate, rounded_text
 from uq.stats.moments import corrected_mean_interval
 from uq.stats.weighted_means import EXACT
 from uq.text.element_names import is_whole
-from uq.text.numbers import counted, in_unit, rows_in_words, threshold
+from uq.text.numbers import counted, grouped, in_unit, rows_in_words, threshold
 from uq.text.quantities import Written
 from uq.text.units import ReadableUnit, beside, unit_of
 
@@ -254,6 +254,16 @@ def _targets(result: Result, output: str) -> Iterator[IndexTarget]:
         yield next(wholes(elements))
     else:
         yield from (lightened(number_of(element)) for element in elements)
+
+
+def why_ended_in_brief(design: "DesignTable", result: Result) -> str:
+    """State in a few words why a run with [design] until ended; see `why_ended`."""
+    assert design.until is not None
+    samples, seen = int(result.dataset.attrs["samples"]), _stop(design, result)[1]
+    wanted = _wanted(design.until.half_width, unit_of(seen.units, seen.estimate.value))
+    if seen.reached:
+        return f"ended at {grouped(samples)} of {grouped(design.samples)} samples: {wanted} reached"
+    return f"{grouped(samples)} samples spent: {wanted} not reached"
 
 
 HOPELESS = 4.0

@@ -18,8 +18,8 @@ from pydantic import Field, model_validator
 
 from uq.errors import InputError, described
 from uq.files.whole_files import file_there
-from uq.machines.machine_file import MachineName, Name, TomlTable
-from uq.machines.study_defaults import ROW_NAME, Headline, RowName, StudyDefaults, Uncertain
+from uq.machines.machine_file import Headline, MachineName, Name, RowName, TomlTable, Uncertain
+from uq.machines.study_defaults import ROW_NAME, StudyDefaults
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from uq.errors import InputError, nearest, one_line
 from uq.files.whole_files import file_there, node
 from uq.machines.row_by_row import SEED
-from uq.machines.study_defaults import ROW_NAME, Headline, RowName, StudyDefaults, Uncertain
+from uq.machines.study_defaults import ROW_NAME, StudyDefaults
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
 
@@ -25,6 +25,12 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=100)]
 """Of a parameter or output."""
 
 MachineName = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
+
+
+RowName = Annotated[list[str], Field(description="singular and plural of a row")]
+Headline = Annotated[list[str], Field(description="outputs that a new study reports")]
+Uncertain = dict[Name, dict[str, Any]]
+"""Input -> its law in a new study, as in a study file."""
 
 
 class TomlTable(BaseModel):

@@ -2,25 +2,16 @@
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Annotated, Any, NamedTuple
-
-from pydantic import Field, ValidationError
+from typing import Any, NamedTuple
 
 from uq.contract import Parameter
 from uq.errors import nearest
 from uq.sampling.input_faults import fault_of, unknown
-from uq.sampling.laws import LAWS, law_of
-from uq.sampling.truncation import law_problem
 
 ROW_NAME = ("run", "runs")
 """Singular and plural of what a row represents, by default."""
 
 _WORDS = re.compile(r"[^\W\d_]([\w -]{0,20}\w)?")
-
-RowName = Annotated[list[str], Field(description="singular and plural of a row")]
-Headline = Annotated[list[str], Field(description="outputs that a new study reports")]
-Uncertain = dict[str, dict[str, Any]]
-"""In a machine file: input -> its law in a new study, as in a study file."""
 
 
 class StudyDefaults(NamedTuple):
@@ -71,6 +62,11 @@ def _are_texts(names: object) -> bool:
 
 def _law_fault(entry: Any, parameter: Parameter) -> str:
     """Return the fault of a law in words; "" if the parameter can have it."""
+    from pydantic import ValidationError
+
+    from uq.sampling.laws import LAWS, law_of
+    from uq.sampling.truncation import law_problem
+
     kind = entry.get("distribution") if isinstance(entry, Mapping) else None
     if not isinstance(kind, str) or kind not in LAWS:
         near = nearest(kind, LAWS) if isinstance(kind, str) else ""

@@ -101,7 +101,11 @@ def html_of(card: Card) -> Markup:
 
 
 def lines_of(card: Card) -> list[Line]:
-    """Return the lines of a card: at most 24 of 80 columns."""
+    """Return the lines of a card: at most 24 of 80 columns, which a person may search."""
+    return [line._replace(text=line.text.replace("\u00a0", " ")) for line in _lines_of(card)]
+
+
+def _lines_of(card: Card) -> list[Line]:
     short = [line for block in _blocks(card, is_short=True) for line in block]
     if len(short) <= SHORT:
         return _with_commands(short)

@@ -49,6 +49,7 @@ from uq.stats.importance_weights import Smoothed
 from uq.stats.intervals import Replicates
 from uq.study.file import AnalysisTable, StudyFile, Tied
 from uq.study.reading import study_of_result
+from uq.text.numbers import counted
 from uq.text.units import ReadableUnit, typical, unit_of
 
 
@@ -130,6 +131,16 @@ class Result:
     def is_random(self) -> bool:
         """Whether rows of the model depend on their seeds."""
         return bool(self.dataset.attrs.get("random"))
+
+    @property
+    def row_name(self) -> tuple[str, str]:
+        """Singular and plural of what a row represents: ``rod``, ``rods``."""
+        singular, _, plural = str(self.dataset.attrs.get("row_name", "")).partition("/")
+        return (singular, plural) if plural else ("run", "runs")
+
+    def counted_rows(self, count: int) -> str:
+        """Return a number of rows by the name of what they represent: ``6 000 rods``."""
+        return counted(count, *self.row_name)
 
     # Outputs and inputs
 

@@ -7,6 +7,7 @@ import pytest
 from computed import as_text, computed, study_of, summarised, with_seed
 from until_studies import study, tables
 
+import uq
 from uq.assess import stopping
 from uq.errors import InputError
 from uq.execution import amending, clusters, row_folder, runner
@@ -62,6 +63,11 @@ def test_a_stopped_run_is_complete(folder):
     assert first.attrs["samples"] < of.design.samples
     (note,) = summarised(first)["notes"]
     assert "mean of y is" in note and "97.06% at each" in note
+    samples = (
+        f"{size:,}".replace(",", " ") for size in (first.attrs["samples"], of.design.samples)
+    )
+    ended = "ended at {} of {} samples: required half-width of 0.2 reached".format(*samples)
+    assert ended.replace("\u00a0", " ") in " ".join(str(uq.card(first)).split())
     again = runner.run(of, "out.nc", progress=pytest.fail)
     assert again.identical(first)
 

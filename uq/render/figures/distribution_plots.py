@@ -99,7 +99,7 @@ def histogram(
     lines = mark_thresholds(panel, result, chosen[0], unit, named=False)
     names += _thresholds_named(chosen, outputs, lines)
     None if wide else roomy(panel)
-    entitle(panel, chosen, part)
+    entitle(panel, result, chosen, part)
     label_lines(panel, names)
     return finish(panel)
 
@@ -150,7 +150,7 @@ def histogram_by_regime(result: AnyResult, output: str, *, axes: Axes | None = N
         if len(chosen) > 1:
             place: Any = {"transform": panel.transAxes, "va": "top", "size": 7}
             panel.text(0.02, 0.98, label(result, element), **place)
-    entitle(panels[0], chosen)
+    entitle(panels[0], result, chosen)
     below = "" if chosen == every else f"\nthe first and the last of {len(every)} elements"
     panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name) + below)
     if wide:
@@ -236,14 +236,14 @@ def lifetime(
     if marked:
         b_lives = ", ".join(name for name in B_LIVES if name in marked)
         next(line for line in panel.lines if line.get_marker() == "o").set_label(b_lives)
-    if label_two_curves(panel, curves, texts, colours):
+    if label_two_curves(panel, curves, texts, colours, [name.at for name in names]):
         for drawn in panel.lines:
             if drawn.get_label() in texts:
                 drawn.set_label("_")
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
     not_yet = "Probability that it has\nnot happened yet"
     other.set_ylabel(not_yet if success else "Survival probability")
-    entitle(panel, chosen, part)
+    entitle(panel, result, chosen, part)
     label_lines(panel, names)
     note_assumed_scale(panel, result, chosen[0])
     return finish(panel)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from uq.render.figures.figure import COLOURS, LIMIT, LINES, SHADES, thinned
 from uq.render.figures.panel import is_wide
-from uq.render.figures.words import input_label, literal, rows_in_words, unbroken
+from uq.render.figures.words import input_label, literal, row_counts, unbroken
 from uq.result.elements import Element, Floats, Mask, flags
 from uq.result.result import Result
 from uq.text.numbers import minus, printed, threshold
@@ -50,9 +50,11 @@ def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[st
     return SHADES[firsts[:i].count(firsts[i]) % len(SHADES)], LINES[line % len(LINES)]
 
 
-def entitle(axes: Axes, chosen: Sequence[Element], *more: str, place: str = "") -> None:
+def entitle(
+    axes: Axes, result: Result, chosen: Sequence[Element], *more: str, place: str = ""
+) -> None:
     """Write a wrapped title: coordinates of the element, number of rows, and further text."""
-    texts = filter(None, (place, rows_in_words(chosen), *more))
+    texts = filter(None, (place, row_counts(result, chosen), *more))
     text = printed(", ".join(texts))  # no line breaks within a number
     axes.set_title(textwrap.fill(text, 44).replace("\u00a0", " "), loc="left")
 

@@ -82,7 +82,7 @@ def inputs(
         if wide:
             logarithmic(panel)
     count = len(next(iter(distributions.values()))[1])
-    rows = f"{grouped(count)}{' weighted' if weights is not None else ''} rows"
+    rows = f"{grouped(count)}{' weighted' if weights is not None else ''} {result.row_name[1]}"
     several = len(result.independent) > count
     of_samples = ", one of each sample" * several
     caption = f"Density of {rows}{of_samples}; line: stated law"

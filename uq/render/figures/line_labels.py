@@ -19,6 +19,7 @@ _LETTER = 0.55 * _SIZE  # typical width of a letter [points]
 _LINE = 9.0  # distance of two lines of labels [points]
 _PANEL = 0.72  # width of a panel relative to its figure
 _WRAPPED = 42  # characters of a line of a note
+_ENOUGH = 0.25  # room for a label of a curve, relative to the panel
 _TITLE = 6.0  # distance of a title above the frame [points]
 
 
@@ -87,9 +88,15 @@ def _apart(ends: tuple[float, float], other: tuple[float, float]) -> bool:
 
 
 def label_two_curves(
-    axes: Axes, curves: list[tuple[Floats, Floats]], texts: list[str], colours: list[str]
+    axes: Axes,
+    curves: list[tuple[Floats, Floats]],
+    texts: list[str],
+    colours: list[str],
+    lines: list[float],
 ) -> bool:
     """Label two rising curves on their outer sides, and return whether both labels fit.
+
+    Each label is at the height at which it is farthest from vertical lines on its side.
 
     Parameters
     ----------
@@ -97,14 +104,25 @@ def label_two_curves(
     curves : list of tuple of ndarray
         Abscissae and ordinates from 0 to 1.
     texts, colours : list of str
+    lines : list of float
+        Abscissae of vertical lines.
     """
     if len(curves) != 2 or max(map(len, texts)) > 16 or not all(len(x) > 1 for x, _ in curves):
         return False
     middles = [float(np.interp(0.5, y, x)) for x, y in curves]
     first = int(np.argmin(middles))
-    places = {first: (0.72, "right", -4), 1 - first: (0.28, "left", 4)}
-    for i, (height, side, shift) in places.items():
+    to_axes = axes.transData + axes.transAxes.inverted()
+    crossing = [to_axes.transform((line, 0))[0] for line in lines]
+    places = {first: ((0.72, 0.6, 0.84), "right", -4), 1 - first: ((0.28, 0.4, 0.08), "left", 4)}
+    for i, (heights, side, shift) in places.items():
         x, y = curves[i]
+
+        def room(height: float, x: Floats = x, y: Floats = y, side: int = shift) -> float:
+            at = to_axes.transform((float(np.interp(height, y, x)), 0))[0]
+            beside = [abs(line - at) for line in crossing if (line - at) * side > 0]
+            return min([_ENOUGH, *beside])
+
+        height = max(heights, key=room)
         axes.annotate(
             texts[i],
             (float(np.interp(height, y, x)), height),

@@ -32,7 +32,7 @@ from uq.render.figures.figure import (
     width_or,
 )
 from uq.render.figures.panel import finish, grid, is_wide, logarithmic, roomy, title, whole_numbers
-from uq.render.figures.words import as_label, input_label, label, rows_in_words
+from uq.render.figures.words import as_label, input_label, label, row_counts
 from uq.result.elements import (
     Element,
     Floats,
@@ -41,7 +41,7 @@ from uq.result.elements import (
 from uq.result.result import AnyResult, Result
 from uq.stats import intervals, order_statistics
 from uq.stats.tails import lacks_variance
-from uq.text.numbers import counted
+from uq.text.numbers import grouped
 
 _MOST_INPUTS = 3
 _MOST_POINTS = 3000
@@ -117,10 +117,10 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
             panel.set_ylabel(as_label(called(element.output), unit.name, 20))
     above = [as_label(element.meaning, unit.name, 46 if alone else 96), label(result, element)]
     statistic = "median" if medians else "mean"
-    of_each = f"lines: {statistic} in slices of a regime's rows" if len(parts) > 1 else ""
-    remarks = [rows_in_words([element]), of_each]
+    of_each = f"lines: {statistic} in slices of each regime" if len(parts) > 1 else ""
+    remarks = [row_counts(result, [element]), of_each]
     if alone and len(first) > 1:
-        subtitle = ", ".join(filter(None, (label(result, element), rows_in_words([element]))))
+        subtitle = ", ".join(filter(None, (label(result, element), row_counts(result, [element]))))
         above, remarks = [subtitle], [of_each]
     elif not alone:
         above, remarks = [", ".join(filter(None, above))], ["; ".join(filter(None, remarks))]
@@ -203,7 +203,7 @@ def _conditional(
     middle, line, low, high = (
         np.insert(series, gaps, np.nan) for series in (middle, line, low, high)
     )
-    line_label = f"{'median' if medians else 'mean'} in slices of {counted(len(x) // count, 'row')}"
+    line_label = f"{'median' if medians else 'mean'} in slices of {grouped(len(x) // count)}"
     if independent:
         line_label += ", 95 % band"
     if np.isfinite(line).any():
@@ -318,7 +318,7 @@ def pairs(result: AnyResult, *, axes: Axes | None = None) -> Figure:
                 )
     for name, (_, colour) in regimes.items():
         panels[0, 0].plot([], [], ".", ms=size, mew=0, color=colour, label=name)
-    panels[0, 0].set_title(f"{counted(len(codes), 'row')} by regime", loc="left")
+    panels[0, 0].set_title(f"{result.counted_rows(len(codes))} by regime", loc="left")
     return finish(panels[0, 0])
 
 

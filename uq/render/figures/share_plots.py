@@ -24,7 +24,7 @@ from uq.render.figures.panel import (
 )
 from uq.render.figures.words import as_label, input_label, literal, symbol_of
 from uq.result.result import AnyResult, Result
-from uq.text.numbers import counted, percent
+from uq.text.numbers import percent
 
 _MOST_SLICES, _ROWS_OF_SLICE = 12, 20
 _ROOM = 1.2  # height of an axis of shares relative to the largest
@@ -86,9 +86,10 @@ def shares(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figur
         for statistics in by_element.values()
         for label in labels
     )
-    panel.set(xlim=(0, 1), xlabel="Share of rows" + has_intervals * ", with 95 % interval")
+    xlabel = f"Share of {result.row_name[1]}" + has_intervals * ", with 95 % interval"
+    panel.set(xlim=(0, 1), xlabel=xlabel)
     meaning = as_label(str(result.dataset[name].attrs["long_name"]), width=46)
-    title(panel, meaning, counted(len(rows), "row"))
+    title(panel, meaning, result.counted_rows(len(rows)))
     return finish(panel)
 
 
@@ -153,11 +154,12 @@ def regime_shares(result: AnyResult, *, axes: Axes | None = None) -> Figure:
             base = top
         wide = is_wide(x)
         logarithmic(panel) if wide else roomy(panel, 4 if side_by_side else 6)
-        panel.set(xlim=(edges[0], edges[-1]), ylim=(0, 1), ylabel="Share of rows")
+        panel.set(xlim=(edges[0], edges[-1]), ylim=(0, 1))
+        panel.set_ylabel(f"Share of {result.row_name[1]}")
         unit = result.input_unit(name).name
         panel.set_xlabel(input_label(result.dataset[name], unit, 40))
-    rows_of_each = counted(int(has_regime.sum()) // count, "row")
-    title(panels[0], f"{counted(len(rows), 'row')}, in slices of {rows_of_each}")
+    of_each = int(has_regime.sum()) // count
+    title(panels[0], f"{result.counted_rows(len(rows))}, in slices of {of_each}")
     return finish(panels[0])
 
 
@@ -198,7 +200,7 @@ def event_probability(
     curve, colour = event.curve, INK
     edges = curve.edges / event.over_unit.per
     value, low, high = np.array([share.numbers for share in curve.shares]).T
-    clause = f"rows that {event.clause}"
+    clause = f"{result.row_name[1]} that {event.clause}"
     (panel,) = column(axes, 2.1)
     lower, upper = (np.append(end, end[-1]) for end in (low, high))  # one per edge
     panel.stairs(value, edges, baseline=None, color=colour, lw=1.4, label="slices of the input")
@@ -209,10 +211,10 @@ def event_probability(
         color="0.4",
         ls="--",
         lw=0.9,
-        label=f"all rows: {percent(event.share.value)}",
+        label=f"all {result.row_name[1]}: {percent(event.share.value)}",
     )
     top = min(1.02, _ROOM * max(np.nanmax(high), event.share.value))
-    panel.set(ylim=(-0.02 * top, top), ylabel="Share of rows")
+    panel.set(ylim=(-0.02 * top, top), ylabel=f"Share of {result.row_name[1]}")
     title(panel, *(as_label(line, width=46) for line in (output_of(result, event.name), clause)))
     over = called(event.over)  # consistent with the sentence beside the figure
     panel.set_xlabel(

@@ -15,7 +15,7 @@ from uq.render.figures.figure import COLOURS
 from uq.result.elements import Element, Floats
 from uq.result.result import Result
 from uq.text.literals import plain
-from uq.text.numbers import capitalized, counted, grouped, minus, percent, quantity
+from uq.text.numbers import capitalized, grouped, minus, percent, quantity
 from uq.text.units import IN_TEXT, LETTERS, WORD, ReadableUnit, unit_of
 from uq.text.units import powers as powers
 from uq.text.units import symbol as as_text
@@ -137,9 +137,9 @@ def label(result: Result, element: Element, never: float = 0.0) -> str:
     return literal(minus(", ".join(filter(None, (place_in_words(result, element), share)))))
 
 
-def rows_in_words(chosen: Sequence[Element]) -> str:
+def row_counts(result: Result, chosen: Sequence[Element]) -> str:
     """Return the number of rows, and the numbers of failed rows and of rows without a value."""
-    counts = [counted(len(chosen[0].values), "row")]
+    counts = [result.counted_rows(len(chosen[0].values))]
     for state in ("failed", "undefined", "censored"):
         most = max(int(getattr(element, state).sum()) for element in chosen)
         if most:

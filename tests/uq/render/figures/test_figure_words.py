@@ -58,7 +58,7 @@ def test_counts_of_rows_have_their_thousands_apart():
     ds = linear(samples=1024)
     titles = [plots.histogram(ds, "y"), plots.inputs(ds)]
     for figure in titles:
-        assert "1 024 rows" in figure.axes[0].get_title(loc="left").replace("\n", " ")
+        assert "1 024 runs" in figure.axes[0].get_title(loc="left").replace("\n", " ")
 
 
 def test_counts_along_an_axis_have_their_thousands_apart():

@@ -119,7 +119,7 @@ def test_inputs_of_samples_of_several_rows_say_which_rows_are_drawn():
         "uncertain": {"x1": inside, "x2": inside | {"level": "chance"}},
     }
     figure = plots.inputs(computed(study_of(tables)))
-    assert "Density of 30 rows, one of each sample" in words(figure)
+    assert "Density of 30 runs, one of each sample" in words(figure)
     lay_out(figure)
     assert not collisions(figure)
     assert "sample" not in words(plots.inputs(linear()))
@@ -129,6 +129,6 @@ def test_the_title_of_weighted_inputs_has_room():
     ds = linear(samples=1000)
     ds = ds.assign(weight=("row", np.linspace(0.5, 1.5, 1000), {"role": "weight"}))
     figure = plots.inputs(ds, names=["x1", "x2"])
-    assert "1 000 weighted rows" in words(figure)
+    assert "1 000 weighted runs" in words(figure)
     lay_out(figure)
     assert not collisions(figure)

@@ -109,7 +109,7 @@ def test_marks_and_band_of_a_life_lie_at_its_curve():
 def test_rows_without_a_value_are_counted_where_they_are_missing():
     ds = linear(samples=64, settings={"fail_above": 0.9})
     lost = int(ds["y"].isnull().sum())
-    assert f"64 rows, {lost} failed" in words(plots.histogram(ds, "y"))
+    assert f"64 runs, {lost} failed" in words(plots.histogram(ds, "y"))
     ds = kinds(samples=100)
     censored = int(ds["life_censored"][:, 0, 0].sum())
     assert f"{censored} censored" in words(plots.scatter(ds, "life[side=left,depth=0.5]"))
@@ -164,7 +164,7 @@ def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer
     (event,) = conclusions.lead.events
     figure = plots.event_probability(ds, event.name)
     (panel,) = figure.axes
-    title = f"Time until the depth is reached\nRows that {event.predicate}"
+    title = f"Time until the depth is reached\nRuns that {event.predicate}"
     assert panel.get_title("left") == title
     assert event.decided_by.startswith("Main driver: rate")
     assert panel.get_xlabel().startswith("Rate ") and "pm" in panel.get_xlabel()
@@ -174,7 +174,7 @@ def test_the_probability_of_an_event_is_over_the_input_by_the_name_in_the_answer
     assert [text.get_text() for text in legend.get_texts()] == [
         "slices of the input",
         "95 % intervals",
-        f"all rows: {100 * event.share.value:.1f} %",
+        f"all runs: {100 * event.share.value:.1f} %",
     ]
 
 

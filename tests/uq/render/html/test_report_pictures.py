@@ -17,12 +17,12 @@ from uq.render.html.page import page
 from uq.render.html.pictures import HEAVIEST_SVG, picture, pictures, shortened
 from uq.result.result import Result
 
-BY_REGIME = 'aria-label="Rows by regime, against the inputs that best separate the regimes"'
+BY_REGIME = 'aria-label="Shares of the regimes over the inputs that best separate them"'
 
 
-def test_a_study_about_the_regimes_is_headed_by_its_rows_by_regime():
+def test_a_study_about_the_regimes_is_headed_by_their_shares_over_the_inputs():
     def headed(outputs):
-        text = page(Result(kinds(samples=64, analysis={"outputs": outputs})), "OUT.nc")
+        text = page(Result(kinds(samples=96, analysis={"outputs": outputs})), "OUT.nc")
         assert text.count(BY_REGIME) == 1
         return BY_REGIME in text[text.index('id="answer"') : text.index('id="explore"')]
 

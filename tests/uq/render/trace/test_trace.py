@@ -116,7 +116,7 @@ def test_options_are_part_of_a_key():
 @pytest.mark.parametrize(
     ("make", "path", "estimator"),
     [
-        slow(every_kind, "outputs/angle/thresholds/0.5/above", "Population.above"),
+        slow(every_kind, "outputs/angle/thresholds/0.5/above", "Population.probability_above"),
         slow(every_kind, "outputs/angle/quantiles/0.5", "Population.quantile"),
         (every_kind, "outputs/angle/effective_rows", "importance_weights.effective_rows"),
         slow(every_kind, "regime/slow", "means.weighted_share"),
