@@ -246,7 +246,7 @@ def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iter
         clause = enough.question[0][0]
         yield f"too few {plural}" + f": {clause}" * (clause != no_causes)
     else:
-        yield f"enough {plural}"
+        yield f"enough {plural}" + " but for the failures" * bool(answer.failed)
     error = {} if lead is None or lead.own_error is None else lead.own_error.members
     if error.get("rows_missing_it"):
         text = f"{percent(error['rows_missing_it'])} miss {100 * error['accuracy']:g} % accuracy"

@@ -3,6 +3,7 @@
 import shlex
 import tomllib
 from contextlib import suppress
+from math import inf
 from pathlib import Path
 
 from uq.cli.printing import console, grid, heading, paragraph
@@ -14,6 +15,8 @@ _STEPS = (
     ("uq run mine.toml", "compute it, into results/NAME.nc"),
     ("uq report results/NAME.nc --open", "show everything on one page, in the browser"),
 )
+
+_MINUTE = 60.0  # [s]
 
 
 def guide() -> None:
@@ -34,7 +37,7 @@ def _with_what_is_here() -> list[tuple[str, str]]:
         ("studies", "toml", "run {}", "run this study"),
         ("results", "nc", "report {} --open", "read this result"),
     ):
-        files = sorted(Path(folder).glob(f"*.{ending}"))
+        files = sorted(Path(folder).glob(f"*.{ending}"), key=_latest_and_shortest)
         if files:
             others = f"one of {len(files) - 1} others" if files[2:] else "1 other"
             more = f", or {others} in {folder}/" if files[1:] else ""
@@ -42,6 +45,15 @@ def _with_what_is_here() -> list[tuple[str, str]]:
             model = _model_option(files[0]) if ending == "toml" else ""
             lines.append((f"uq {verb.format(name)}{model}", words + more))
     return lines
+
+
+def _latest_and_shortest(file: Path) -> tuple[float, int, str]:
+    """Return the key that puts the last edited file first, the shortest of a fresh checkout."""
+    try:
+        status = file.stat()
+    except OSError:
+        return inf, 0, file.name
+    return -(status.st_mtime // _MINUTE), status.st_size, file.name
 
 
 def _model_option(study: Path) -> str:

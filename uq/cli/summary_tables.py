@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from itertools import chain
-from math import isfinite, isnan
+from math import isnan
 from typing import NamedTuple
 
 from rich.text import Text
@@ -24,8 +24,6 @@ from uq.stats.estimate import Estimate, failed_bounds_text, interval_text
 from uq.text.literals import plain
 from uq.text.numbers import compared, counted, estimated, in_brackets, number, percent
 from uq.text.units import ReadableUnit, readable
-
-_LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, too
 
 _MOST_EFFECTS = 3
 
@@ -136,7 +134,7 @@ def _share(statistic: Statistic) -> tuple[str, ...]:
 
 
 def _lines(output: Described, block: Block) -> Iterator[Line]:
-    """Yield label, value and interval in the unit of the block, and a long time in seconds."""
+    """Yield label, value, interval and remark, in the unit of the block."""
     for part in output.parts.values():
         shown = [statistic for statistic in part if _is_shown(statistic)]
         for statistic in shown:
@@ -161,8 +159,6 @@ def _otherwise(statistic: Statistic) -> Statistic | None:
 
 def _of_statistic(statistic: Statistic, block: Block) -> Iterator[Line]:
     per, more = block.per(statistic), ""
-    if statistic.unit == "s" and per >= _LONG and isfinite(statistic.estimate.value):
-        more = f"{number(statistic.estimate.value)} s"
     if statistic.unit == "rows":
         more = statistic.unit
     elif form := split_name(statistic.of)[0]:

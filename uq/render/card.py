@@ -294,12 +294,15 @@ def _share(cause: Cause) -> str:
 
 
 def _law(cause: Cause) -> str:
-    """Return the halved scatter, and that of now in brackets; without the unit if it is long."""
+    """Return the halved scatter, and that of now in brackets; short if it would be long."""
     if cause.tightened is None:
         return ""
     if ";" in cause.tightened.law:
         return "each input"
-    then, _, now = cause.tightened.law.partition(" instead of ")
+    law = cause.tightened.law
+    if len(law.replace("instead of ", "()")) > _LAW:
+        law = re.sub(r"(?<![-.\d])(\d\S*) to (?=\d)", "\\1–", law)
+    then, _, now = law.partition(" instead of ")
     words = then.split()
     if len(f"{then} ({now})") > _LAW:
         while len(words) > 1 and not words[-1].lstrip("-")[:1].isdigit():

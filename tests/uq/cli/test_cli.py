@@ -1,7 +1,9 @@
 """The command line: what it prints and where, verb by verb."""
 
 import json
+import os
 import shlex
+import time
 from math import inf, nan
 from pathlib import Path
 
@@ -60,14 +62,16 @@ def test_no_argument_asks_what_to_do_next(uq, write_study, folder):
         assert step in ended.out
     assert "In this folder" not in ended.out
     (folder / "studies").mkdir()
-    for name in ("one", "two"):
-        write_study(name=name).rename(folder / "studies" / f"{name}.toml")
+    for name, more in (("longer", "# more"), ("one", "")):
+        write_study(name=name, more=more).rename(folder / "studies" / f"{name}.toml")
     (folder / "results").mkdir()
     (folder / "results" / "my one.nc").touch()
     out = uq().out
     assert "uq run studies/one.toml" in out and "1 other in" in out
     assert "uq report 'results/my one.nc' --open" in out
     assert max(map(len, out.splitlines())) <= 80
+    os.utime("studies/longer.toml", (later := time.time() + 600, later))
+    assert "uq run studies/longer.toml" in uq().out  # the last one that was edited
 
 
 def test_init_gives_a_study_that_checks_and_runs(uq, folder):
