@@ -38,7 +38,7 @@ def show_findings(findings: Findings, *, explain: bool = False, full: bool = Fal
     if explain or full:
         return
     for line in lines_of(card_of(findings, answer)):
-        text = Text(plain(line.text), style="yellow" if line.warns else "")
+        text = Text(plain(line.text), style="magenta" if line.warns else "")
         text.stylize("bold", *line.bold)
         console.print(text, soft_wrap=True)
 
