@@ -20,7 +20,7 @@ from uq.assess.sample import (
 )
 from uq.contract import Floats, Mask
 from uq.stats import order_statistics
-from uq.stats.clusters import Clusters, dealt
+from uq.stats.clusters import Clusters, random_groups
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import (
     Ends,
@@ -163,7 +163,7 @@ class CountedRows(Sample):
         estimate = outliving(values, censored, time, known_at_once=known_at_once)
         if self.part is None:
             return Curve(estimate.share, *self._pointwise(values, censored, time, estimate))
-        group = dealt(self.part[element.present])
+        group = random_groups(self.part[element.present])
         shares = [
             outliving(
                 values[group == r], censored[group == r], time, known_at_once=known_at_once

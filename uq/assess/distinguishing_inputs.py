@@ -31,7 +31,7 @@ Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class Apart:
+class RankShift:
     """An input whose values differ between the earliest rows and all.
 
     Attributes
@@ -97,7 +97,7 @@ def inputs_apart(
     first: Places,
     ranked: Mapping[str, Floats],
     replicate: Replicates = None,
-) -> list[Apart] | None:
+) -> list[RankShift] | None:
     """Return the inputs whose values differ between some rows and all, the most different first.
 
     Parameters
@@ -112,7 +112,7 @@ def inputs_apart(
 
     Returns
     -------
-    list of Apart or None
+    list of RankShift or None
         Those whose mean rank [1]_, or mean distance of the rank from the middle, differs with
         95 % confidence for all inputs together (Bonferroni). None where there is no interval.
 
@@ -142,7 +142,7 @@ def inputs_apart(
                 ends = mean_interval(values[mask], part)
                 sign = 1 if mean > middle else -1
                 column = columns[name]
-                difference = Apart(
+                difference = RankShift(
                     name,
                     sign if values is rank else 0,
                     0 if values is rank else sign,

@@ -157,7 +157,7 @@ class FleetNumbers:
             why = f"{random_effects.ONE_UNIT}; {several('units', units.design)}"
             return lambda probability: Estimate(reason=why)
         if not units.are_alike:
-            return random_effects.Noisy(
+            return random_effects.DeconvolvedProbability(
                 units.ended(time), units.weights, self._part, units.of_worlds
             )
         kept = world.present
@@ -168,7 +168,7 @@ class FleetNumbers:
         return random_effects.noise_free(units.ended(time)[kept, 0], units.nodes, part, weights)
 
     def _unit_at(self, time: float, share: float) -> Estimate:
-        """Return the point of P(a unit has ended) below which it is in a share of worlds."""
+        """Return the quantile over worlds of the failure probability of a unit."""
         exceeding = self._exceeding(time)
         middle = exceeding(0.5)
         if isnan(middle.value):

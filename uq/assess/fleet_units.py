@@ -1,4 +1,4 @@
-"""Units of one world: P(a unit has ended), and the time of the k-th end of a fleet.
+"""Failure probabilities of units by world, and the time of the k-th failure of a fleet.
 
 A world is a sample of a study: its units have the same shared inputs, and are independent given
 these. What scales the lives of units alone is integrated inside each unit; what scales those of all
@@ -27,7 +27,7 @@ from uq.result.element import Element
 from uq.result.nesting import Nesting
 from uq.result.result import Result
 from uq.sampling.levels import CHANCE, OWN, SHARED
-from uq.stats.counting import more_than, turns
+from uq.stats.counting import fleet_failure_probabilities, more_than
 from uq.stats.intervals import Replicates
 
 _NODES = 120
@@ -176,7 +176,7 @@ class _MoreThan:
     def _turns(self) -> Floats:
         units, element = self.units, self.units.element
         table = units.place.table(np.where(element.present, element.values, np.nan))
-        times = turns(table, self.size, self.allow, units.are_alike)
+        times = fleet_failure_probabilities(table, self.size, self.allow, units.are_alike)
         place = units.place
         return times[place.sample, place.unit, place.repeat]
 

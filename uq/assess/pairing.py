@@ -31,7 +31,7 @@ WORST = -1.0
 class Kinship(Enum):
     """Relation between the rows of two results; the value is the sentence that reports it."""
 
-    STRANGERS = "The seeds differ: the two samples are independent."
+    INDEPENDENT = "The seeds differ: the two samples are independent."
     ROWS = "The studies share a seed: rows with the same number are paired."
     ROWS_SAME = "Both results have the same rows."
     REPLICATES = "The studies share a seed: replicates with the same number are paired."
@@ -64,7 +64,7 @@ def kinship(first: Result, second: Result) -> Kinship:
     if any(result.design.imported for result in both):
         return _kinship_of_imported(first, second)
     if first.dataset.attrs["seed"] != second.dataset.attrs["seed"]:
-        return Kinship.STRANGERS
+        return Kinship.INDEPENDENT
     independent = [result.has_independent_samples for result in both]
     if any(independent) and any(result.is_nested for result in both):
         return Kinship.ROWS_SAME if _same_rows(first, second) else Kinship.UNKNOWN
@@ -213,7 +213,7 @@ class Pair:
         )
 
     def most_that_change_sides(self, sample: SelectedRows) -> float:
-        """Return the largest share of rows that change sides where no row of a sample does.
+        """Return the exact upper limit of a share of which a sample shows no case.
 
         A share that has no hit among all rows in 2.5 % of samples: the upper end of the exact 95 %
         interval [1]_. Rows of a design that spreads evenly hit such a share more often.
@@ -240,7 +240,7 @@ class Pair:
     @property
     def unpaired(self) -> float:
         """The correlation to assume where rows are not paired."""
-        return 0.0 if self.kinship is Kinship.STRANGERS else WORST
+        return 0.0 if self.kinship is Kinship.INDEPENDENT else WORST
 
     def _correlation(self, estimator: Estimator, samples: list[SelectedRows]) -> float:
         """Return the correlation of influences of paired rows, or of means in paired replicates.

@@ -151,7 +151,7 @@ class Population(Sample):
         return replace(share(on_side(threshold, side)), counts_hits=False, averages=True)
 
     def quantile_estimator(self, probability: float) -> Estimator:
-        """Return the estimator of a quantile; another study has another time."""
+        """Return the estimator of a quantile, located anew in each study compared."""
 
         def rows(other: Element) -> SelectedRows:
             at = Population(other, None).middle(probability)
@@ -176,7 +176,7 @@ class Population(Sample):
         return None if weights is None else weights[kept]
 
     def _part(self, kept: Mask, time: float, side: int = 1) -> Replicates:
-        """Return the rows of a part, or their complement, from which P(T < time) is estimated.
+        """Return the clusters for the variance of P(T < time), the error of a shared law included.
 
         Where rows are means over what they have learnt together, the law that they have learnt
         depends on how the terms go together with T < time inside each.

@@ -104,7 +104,7 @@ def _mean(share: Floats, part: Replicates, weights: Floats | None) -> Estimate:
     return Estimate(estimate.value, estimate.value, estimate.value) if alike else estimate
 
 
-class Noisy:
+class DeconvolvedProbability:
     """Distribution over worlds of a probability that is estimated from several units of each.
 
     Its law is normal on the scale of probits [1]_, fitted by maximum likelihood to the numbers of

@@ -114,7 +114,7 @@ def share(sample: Callable[[Element], SelectedRows | None] = with_value) -> Esti
 
 
 def quantile(probability: float) -> Estimator:
-    """Return the estimator of a quantile; the influence of a row is its side alone."""
+    """Return the estimator of a quantile; a row's influence is whether it lies below."""
 
     def of(x: Floats) -> float:
         return order_statistics.quantile(x, probability)

@@ -207,7 +207,7 @@ class TermsOfLaws:
 
     @property
     def means(self) -> Floats:
-        """Over the law of each row, shape (n, terms)."""
+        """Mean of each term over the law of each row, shape (n, terms)."""
         return np.asarray(self._up_to[:, -1])
 
     def below(self, probability: Floats) -> Floats:
@@ -320,7 +320,7 @@ def moments_of_input(rows: Result, inputs: Inputs) -> tuple[Floats, Floats]:
 
 
 @dataclass(frozen=True)
-class Surviving:
+class ConditionalLaw:
     """The law of lives that outlast a time.
 
     Attributes
@@ -371,7 +371,7 @@ def learnt_terms(law: RowLaw | None, lives: Floats, time: float) -> tuple[Floats
     """
     if isinstance(law, LearntScale) and law.terms is not None:
         return law.terms.means, law.terms_below(lives, time, law.terms)
-    if not isinstance(law, Surviving):
+    if not isinstance(law, ConditionalLaw):
         return None
     earlier, all_by = (learnt_terms(law.law, lives, at) for at in (law.since, time))
     if earlier is None or all_by is None:

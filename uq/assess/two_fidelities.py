@@ -45,7 +45,7 @@ _BLOCK = 65_536
 
 
 @dataclass(frozen=True)
-class Sharpened:
+class ControlVariateEstimate:
     """An estimate that a twin sharpens.
 
     Attributes
@@ -79,14 +79,14 @@ class TwoFidelities:
     rows, cheap_rows : int
         Of the result, and of the twin alone.
     outputs : dict of str to dict
-        Element -> estimate (``mean``, ``P(>t)``, ``P(<t)``) -> `Sharpened`. An element whose tail
-        has no variance has no mean here.
+        Element -> estimate (``mean``, ``P(>t)``, ``P(<t)``) -> `ControlVariateEstimate`. An element
+        whose tail has no variance has no mean here.
     """
 
     twin: str
     rows: int
     cheap_rows: int
-    outputs: Mapping[str, Mapping[str, Sharpened]]
+    outputs: Mapping[str, Mapping[str, ControlVariateEstimate]]
 
 
 def two_fidelities(result: AnyResult, model: str | None = None) -> pd.DataFrame:
@@ -162,7 +162,7 @@ def twin_facts(fidelities: TwoFidelities) -> Fact:
     return Fact(vars(fidelities) | {"outputs": outputs}, (with_twin,), notes=TWIN_ROWS)
 
 
-def _sharpened(label: str, sharpened: Sharpened) -> Fact:
+def _sharpened(label: str, sharpened: ControlVariateEstimate) -> Fact:
     by, plain_by = _MEAN if label == "mean" else _SHARE
     plain = Fact(estimate_json.numbers(sharpened.plain), plain_by)
     members: dict[str, Any] = estimate_json.numbers(sharpened.estimate)
@@ -181,7 +181,7 @@ _SHARE = (controlled_share,), (share_of, share_interval)
 
 def _estimates(
     element: Element, control: Element, many: Element, study: Study
-) -> Iterator[tuple[str, Sharpened]]:
+) -> Iterator[tuple[str, ControlVariateEstimate]]:
     present, kept = element.present, ~element.failed
     if present.any() and not (element.never | element.censored).any():
         alone = moments(element.values[present]).mean
@@ -189,7 +189,7 @@ def _estimates(
             controlled = controlled_mean(
                 element.values, present, controls=_filled(control), many=_filled(many)
             )
-            yield "mean", Sharpened(*controlled, alone)
+            yield "mean", ControlVariateEstimate(*controlled, alone)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         if element.unknown_sides(threshold).any() or not kept.any():
             continue
@@ -201,7 +201,10 @@ def _estimates(
             failed = failed_share_bounds(hits, element.failed, None)
             note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
             plain = share_of(hits[kept], None)
-            yield f"P({sign}{threshold!r})", Sharpened(*controlled, plain, failed, note)
+            yield (
+                f"P({sign}{threshold!r})",
+                ControlVariateEstimate(*controlled, plain, failed, note),
+            )
 
 
 def _note_on_few(hits: int, rows: int) -> str:

@@ -17,8 +17,8 @@ from uq.explore.updating import is_study, learn, samples_for
 from uq.files.whole_files import check_target
 from uq.learning.answer import Learnt, learnt, learnt_facts
 from uq.learning.inspections import read
-from uq.learning.next_inspection import Worth, unit_of_time, worth
-from uq.learning.posterior import Taught
+from uq.learning.next_inspection import InspectionValue, unit_of_time, worth
+from uq.learning.posterior import InformationGain
 from uq.learning.posterior_inputs import InputLearnt
 from uq.learning.remaining_life import ANY, Remaining, read_times
 from uq.result.result import Result
@@ -104,7 +104,7 @@ def _show(result: Result, answer: Learnt) -> None:
     note(text + (f"; Pareto k = {worst.k:.2f}." if isfinite(worst.k) else "."))
 
 
-def _inspection_label(taught: Taught) -> str:
+def _inspection_label(taught: InformationGain) -> str:
     inspection = taught.inspection
     text = f"{inspection.unit}: {inspection.output} {inspection.kind}"
     if inspection.value is not None:
@@ -193,7 +193,7 @@ def next_inspection(
         note(text)
 
 
-def _as_json(expected: Worth) -> dict[str, Any]:
+def _as_json(expected: InspectionValue) -> dict[str, Any]:
     return {
         "life": expected.life,
         "inspect": expected.output,

@@ -13,8 +13,8 @@ from uq.assess.population import Population
 from uq.assess.summary_facts import quality_facts
 from uq.errors import InputError
 from uq.learning.inspections import Inspection
-from uq.learning.posterior import Posterior, Taught, posterior, taught
-from uq.learning.posterior_checks import STRANGE, strangeness
+from uq.learning.posterior import InformationGain, Posterior, information_gains, posterior
+from uq.learning.posterior_checks import STRANGE, prior_predictive_p_value
 from uq.learning.posterior_inputs import (
     Confounded,
     InputLearnt,
@@ -46,7 +46,7 @@ class Learnt:
     inputs : list of InputLearnt
     confounded : list of Confounded
     lives : list of Remaining
-    taught : list of Taught
+    taught : list of InformationGain
     strangeness : float
         Prior-predictive p-value of the inspections (Box 1980).
     notes : list of str
@@ -58,7 +58,7 @@ class Learnt:
     inputs: list[InputLearnt]
     confounded: list[Confounded]
     lives: list[Remaining]
-    taught: list[Taught]
+    taught: list[InformationGain]
     strangeness: float
     notes: list[str]
 
@@ -84,17 +84,17 @@ def learnt(result: AnyResult, by: Sequence[float] = ()) -> Learnt:
     cv = float(result.dataset.attrs[MODEL_ERROR])
     rows = prior_of(result).independent
     updated = posterior(rows, inspections, cv)
-    strange = strangeness(updated, int(result.dataset.attrs["seed"]), cv)
+    p_value = prior_predictive_p_value(updated, int(result.dataset.attrs["seed"]), cv)
     return Learnt(
         inspections,
         min(quality, key=lambda weights: weights.effective),
         list(inputs_learnt(result)),
         confounded(result),
         list(remaining(result, by)),
-        list(taught(updated)),
-        strange,
+        list(information_gains(updated)),
+        p_value,
         [
-            *_warnings(strange),
+            *_warnings(p_value),
             *_alike(list(updated.units)),
             *updated.not_integrated,
             *_interpolated(updated),
@@ -103,10 +103,10 @@ def learnt(result: AnyResult, by: Sequence[float] = ()) -> Learnt:
     )
 
 
-def _warnings(strange: float) -> Iterator[str]:
-    if strange < STRANGE:
+def _warnings(p_value: float) -> Iterator[str]:
+    if p_value < STRANGE:
         yield (
-            f"Warning: the inspections contradict the prior (p-value {percent(strange)}):"
+            f"Warning: the inspections contradict the prior (p-value {percent(p_value)}):"
             " a law, the model (--model-error) or an inspection may be wrong."
         )
 
@@ -216,9 +216,9 @@ def learnt_facts(summary: Learnt) -> Fact:
         ),
         "taught": fact(
             [as_table(gain.inspection) | {"bits": gain.bits} for gain in summary.taught],
-            (posterior, taught),
+            (posterior, information_gains),
         ),
-        "strangeness": fact(summary.strangeness, (posterior, strangeness)),
+        "strangeness": fact(summary.strangeness, (posterior, prior_predictive_p_value)),
         "notes": summary.notes,
         "uninspected": units.pop(ANY, {}),
         "units": units,

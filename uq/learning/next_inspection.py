@@ -24,7 +24,7 @@ _FEW, _MOST = 0.01, 0.5
 
 
 @dataclass(frozen=True)
-class Worth:
+class InspectionValue:
     """Value of inspections of a number of units at given times.
 
     Attributes
@@ -59,7 +59,7 @@ def worth(
     units: Sequence[int] = (1,),
     cv: float = 0.1,
     life: str | None = None,
-) -> Worth:
+) -> InspectionValue:
     """Estimate the value of inspecting more units (preposterior, Bayes linear).
 
     Parameters
@@ -79,7 +79,7 @@ def worth(
 
     Returns
     -------
-    Worth
+    InspectionValue
 
     Raises
     ------
@@ -135,7 +135,7 @@ def worth(
             narrowing[time, count] = _narrowing(between, within, count, float(np.log1p(cv**2)))
     spread = _variance_components((target, target), worth_of_rows, place)[0][0, 0]
     spread = max(spread, 0.0) ** 0.5
-    return Worth(element.name, output, spread, narrowing, observable.time_unit, notes)
+    return InspectionValue(element.name, output, spread, narrowing, observable.time_unit, notes)
 
 
 def unit_of_time(result: Result, output: str) -> str:

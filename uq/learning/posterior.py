@@ -197,7 +197,7 @@ def posterior(rows: Result, inspections: Sequence[Inspection], model_cv: float =
     return Posterior(any_unit, units, evidence, likelihoods, law, only_inspected)
 
 
-class Taught(NamedTuple):
+class InformationGain(NamedTuple):
     """Information gain of an inspection, given all others.
 
     Attributes
@@ -217,7 +217,7 @@ class Taught(NamedTuple):
     time_unit: str
 
 
-def taught(posterior: Posterior) -> Iterator[Taught]:
+def information_gains(posterior: Posterior) -> Iterator[InformationGain]:
     """Yield the information gain of each inspection, in their order.
 
     The gain concerns all unknowns, shared and of each unit, relative to the posterior given all
@@ -242,7 +242,7 @@ def taught(posterior: Posterior) -> Iterator[Taught]:
             others = [log for other, log in single.items() if other != inspection]
             bits = _gain(rest + sum(others, np.zeros(rest.shape)), single[inspection])
             observable = likelihoods.observables[inspection]
-            yield Taught(inspection, bits, observable.unit, observable.time_unit)
+            yield InformationGain(inspection, bits, observable.unit, observable.time_unit)
 
 
 def _gain(before: Floats, log_likelihood: Floats) -> float:

@@ -33,7 +33,7 @@ _OPEN = 0.01
 """Largest acceptable share of rows in which censoring hides the observable."""
 
 
-def strangeness(posterior: Posterior, seed: int, model_cv: float) -> float:
+def prior_predictive_p_value(posterior: Posterior, seed: int, model_cv: float) -> float:
     """Return the prior-predictive p-value of the inspections [1]_.
 
     Campaigns with the same inspections are simulated from the rows and the error laws. The test

@@ -8,7 +8,7 @@ import numpy as np
 
 from uq.assess.integrated_inputs import elements_with_laws, inputs_of
 from uq.assess.population import Population
-from uq.assess.scale_laws import Surviving
+from uq.assess.scale_laws import ConditionalLaw
 from uq.contract import Floats, Output
 from uq.errors import InputError, choices
 from uq.learning.inspections import Inspection, InspectionKind
@@ -228,7 +228,7 @@ def _of_life(
         values=np.where(still, element.values, np.nan),
         censored=element.censored & still,
         failed=~still,
-        law=None if element.law is None else Surviving(element.law, element.below(seen), seen),
+        law=None if element.law is None else ConditionalLaw(element.law, element.below(seen), seen),
         weights=weights,
         most=element.most * still.mean() / share,
     )

@@ -151,8 +151,8 @@ def linearised_means(values: NDArray[Any], part: NDArray[np.integer]) -> Floats:
     return mean + np.count_nonzero(occupied) * pull[occupied] / len(values)
 
 
-def dealt(part: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Return the random group of each row: at most 32 groups, for estimates other than means.
+def random_groups(part: NDArray[np.integer]) -> NDArray[np.integer]:
+    """Assign clusters to at most 32 groups, for variance estimates of other numbers than means.
 
     Parameters
     ----------

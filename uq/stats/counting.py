@@ -40,8 +40,8 @@ def more_than(ended: Floats, size: int, allow: int, are_alike: bool) -> Floats:
     return 1 - at_most(ended, size, allow)
 
 
-def turns(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
-    """Return the probability that each life of a sample is the life of its fleet.
+def fleet_failure_probabilities(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
+    """Return the probability that each failure is the (allow + 1)-th of a random fleet.
 
     The life of a fleet ends when more than `allow` of its units have ended. This is at the life of
     one unit. If all lives of a sample are multiplied by a common factor, their order does not

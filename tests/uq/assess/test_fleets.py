@@ -10,7 +10,7 @@ import uq as api
 from benchmarks.coverage import fleets as counted
 from uq.assess.fleet import fleet_facts, fleet_of
 from uq.assess.fleet_units import units_of
-from uq.assess.random_effects import ONE_UNIT, Noisy
+from uq.assess.random_effects import ONE_UNIT, DeconvolvedProbability
 from uq.assess.summary_table import summary
 from uq.errors import InputError
 from uq.files.whole_files import write_result
@@ -173,10 +173,10 @@ def test_the_noise_of_units_is_no_spread():
     """Samples that differ by the luck of their units alone have no band."""
     rng = np.random.default_rng(3)
     ended = (rng.random((100, 10, 1)) < 0.3).astype(float)
-    spread = Noisy(ended, np.ones(1), None)
+    spread = DeconvolvedProbability(ended, np.ones(1), None)
     if not spread.refusal:
         assert spread(0.45).value < 0.05 and spread(0.15).value > 0.95
-    single = Noisy(ended[:, :1], np.ones(1), None)
+    single = DeconvolvedProbability(ended[:, :1], np.ones(1), None)
     assert single.refusal == ONE_UNIT
 
 

@@ -142,7 +142,7 @@ def test_curves_of_equal_rows_are_as_wide_as_those_of_samples():
 
 def test_studies_with_one_seed_are_not_paired_row_by_row():
     ds, other = nested_result(), nested_result(seed=6)
-    assert kinship(Result(ds), Result(other)) is Kinship.STRANGERS
+    assert kinship(Result(ds), Result(other)) is Kinship.INDEPENDENT
     assert kinship(Result(ds), Result(ds)) is Kinship.ROWS_SAME
     assert kinship(Result(ds), Result(nested_result(samples=32))) is Kinship.UNKNOWN
     assert kinship(Result(ds), Result(linear(seed=5))) is Kinship.UNKNOWN

@@ -9,7 +9,7 @@ from uq.assess.answer.events import Event
 from uq.assess.answer.leading_level import VarianceComponents
 from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.quantities import Quantity
-from uq.assess.answer.sufficiency import MOST, Enough, bounds_unsettled, needed
+from uq.assess.answer.sufficiency import MOST, SampleSizeAssessment, bounds_unsettled, needed
 from uq.assess.answer.tightening import tighten
 from uq.assess.answer.wording import ASSUMED, CHOSEN, called, called_together, mark_of, share_text
 from uq.assess.findings import Findings
@@ -190,7 +190,7 @@ def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
         )
 
 
-def _add_rows(result: Result, enough: Enough) -> Iterator[Advice]:
+def _add_rows(result: Result, enough: SampleSizeAssessment) -> Iterator[Advice]:
     """Yield the required sample size, or the reason for missing intervals."""
     rows = len(result)
     if enough.unknown:

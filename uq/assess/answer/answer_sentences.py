@@ -9,7 +9,7 @@ from uq.assess.answer.events import Event
 from uq.assess.answer.leading_level import VarianceComponents
 from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.quantities import Quantity
-from uq.assess.answer.sufficiency import Enough
+from uq.assess.answer.sufficiency import SampleSizeAssessment
 from uq.assess.answer.wording import share_text
 from uq.assess.fact import Fact
 from uq.assess.summary import status_counts
@@ -43,7 +43,7 @@ class Answer:
         Variance components of the subject of the study, where samples have several rows.
     starts_alike : str
         Sentence on a start that is equal in all rows but might decide the regime, or "".
-    enough : Enough
+    enough : SampleSizeAssessment
         Sufficiency of the sample size.
     unmeasured : dict of str to Fact
         Assumed laws and fixed values, and laws without a source
@@ -66,7 +66,7 @@ class Answer:
     regimes_first: bool = False
     levels: VarianceComponents | None = None
     starts_alike: str = ""
-    enough: Enough = field(default_factory=Enough)
+    enough: SampleSizeAssessment = field(default_factory=SampleSizeAssessment)
     unmeasured: Mapping[str, Fact] = field(default_factory=dict)
     ties: str = ""
     mixing: Fact = field(default_factory=lambda: Fact({}))

@@ -15,7 +15,7 @@ from uq.assess.answer.wording import (
 )
 from uq.assess.distinguishing_inputs import (
     FEWEST,
-    Apart,
+    RankShift,
     RegimeOfFirst,
     earliest_rows,
     inputs_apart,
@@ -47,7 +47,7 @@ class Earliest:
         Their lives.
     size, total : int
         Numbers of the earliest rows, and of all that have a life.
-    inputs : tuple of Apart, or None
+    inputs : tuple of RankShift, or None
         Inputs whose values differ, the most different first; None if undetermined.
     units : tuple of DisplayUnit
         Their units.
@@ -66,7 +66,7 @@ class Earliest:
     command: str
     size: int = 0
     total: int = 0
-    inputs: tuple[Apart, ...] | None = None
+    inputs: tuple[RankShift, ...] | None = None
     units: tuple[DisplayUnit, ...] = ()
     regimes: tuple[RegimeOfFirst, ...] = ()
 
@@ -196,7 +196,7 @@ def earliest(
     )
 
 
-def _in_words(difference: Apart, unit: DisplayUnit, is_first: bool) -> str:
+def _in_words(difference: RankShift, unit: DisplayUnit, is_first: bool) -> str:
     name = called(difference.name)
     if difference.direction == 0:
         place = "away from" if difference.outwards > 0 else "near"

@@ -116,7 +116,7 @@ def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Shortfa
 
 
 @dataclass(frozen=True)
-class Enough:
+class SampleSizeAssessment:
     """Sufficiency of the sample size.
 
     Attributes
@@ -199,7 +199,7 @@ class Enough:
 
 def enough_of(
     findings: Findings, answered: Sequence[Quantity], regimes: Sequence[Event] = ()
-) -> Enough:
+) -> SampleSizeAssessment:
     """Return the sufficiency of the sample size.
 
     Parameters
@@ -230,7 +230,7 @@ def enough_of(
         for clause, factor in unsettled(quantity)
     ]
     errors = None if not about or result.has_weights else _errors(findings, about[0])
-    enough = Enough(
+    enough = SampleSizeAssessment(
         unknown,
         least_settled_first(question),
         least_settled_first(besides),
