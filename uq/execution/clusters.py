@@ -8,9 +8,11 @@ import logging
 import re
 import sys
 import time
+from asyncio import AbstractEventLoop
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import dask
 from distributed import Client, LocalCluster
@@ -68,8 +70,18 @@ def local_workers(
             )
         stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster, set_as_default=False))
+        client.loop.asyncio_loop.set_exception_handler(_without_timeouts)
         stack.enter_context(undone(children.close))  # first: workers wait for their rows
         yield Workers(client, workload, row_limit, run=stack.enter_context(named(children)))
+
+
+def _without_timeouts(loop: AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Handle what a loop of dask reports, except a reply that nobody awaits any more.
+
+    On a busy computer such a future may be collected after the run, when logs are shown again.
+    """
+    if not isinstance(context.get("exception"), TimeoutError):
+        loop.default_exception_handler(context)
 
 
 @contextmanager

@@ -17,6 +17,7 @@ import pytest
 from own_study import own_study
 from wordings import sentence
 
+from uq.execution.clusters import _without_timeouts
 from uq.execution.workers import quiet
 
 PATIENCE = 30.0
@@ -251,4 +252,15 @@ def test_what_a_cluster_leaves_unawaited_says_nothing(caplog):
     leave()
     gc.collect()
     assert [record.name for record in caplog.records] == ["asyncio"]
+    loop.close()
+
+
+def test_a_reply_of_a_cluster_that_comes_too_late_says_nothing_after_the_run(caplog):
+    loop = asyncio.new_event_loop()
+    loop.set_exception_handler(_without_timeouts)
+    for error in (TimeoutError("Timeout"), ValueError("a mistake")):
+        loop.create_future().set_exception(error)
+    gc.collect()
+    assert [record.name for record in caplog.records] == ["asyncio"]
+    assert "a mistake" in caplog.text and "Timeout" not in caplog.text
     loop.close()
