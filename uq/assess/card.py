@@ -249,7 +249,8 @@ def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iter
         yield f"enough {plural}" + " but for the failures" * bool(answer.failed)
     error = {} if lead is None or lead.own_error is None else lead.own_error.members
     if error.get("rows_missing_it"):
-        text = f"{percent(error['rows_missing_it'])} miss {100 * error['accuracy']:g} % accuracy"
+        share, accuracy = percent(error["rows_missing_it"]), 100 * error["accuracy"]
+        text = f"{share} have numerical errors above {accuracy:g} %"
         yield text + _moved(lead, error)
     if answer.regimes and not answer.regimes_first:
         yield f"{percent(answer.regimes[0].share.value)} {answer.regimes[0].predicate}"
@@ -281,7 +282,7 @@ def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
             case "source":
                 yield f"add a source for {words}"
             case "rows" if entry.rows is not None:
-                yield f"compute about {grouped(entry.rows)} rows"
+                yield f"study {grouped(entry.rows)} {result.row_name[1]} in all"
             case "failed":
                 again = f"uq rerun {result.file} --failed{result.model_option}"
                 yield f"fix the failed rows, then {again}"

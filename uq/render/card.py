@@ -260,7 +260,7 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     header = [
         ("CAUSES", ""),
         (
-            {"ST": "total share", "S1": "share"}.get(card.index, card.index),
+            {"ST": "total share", "S1": "share"}.get(card.index, f"{card.index}, 0 to 1"),
             f"of {card.share_of}" if card.share_of else "",
         ),
         (f"{step} more", "changes it") if step else ("scatter halved", "(now)"),
