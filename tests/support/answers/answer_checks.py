@@ -52,6 +52,8 @@ class Checker:
             yield from (
                 f"{regime.predicate}: {text}" for text in denied_event(self.rows, regime, hits)
             )
+            if conclusions.regimes_first:
+                yield from self.regime_repeated(conclusions.enough.again, regime, hits)
         for advice in conclusions.advice:
             yield from (
                 f"{advice.rule}: {text}" for text in denied_advice(self.ds, advice, conclusions)
@@ -192,18 +194,35 @@ class Checker:
                 yield prediction.sentence
                 return
             estimate = partial(np.nanquantile, q=p, method="inverted_cdf")
-        random, part = np.random.default_rng(0), replicates_of(self.rows)
-        groups = np.arange(len(numbers)) if part is None else part
-        rows = [np.flatnonzero(groups == group) for group in np.unique(groups)]
-        drawn = (random.integers(len(rows), size=len(rows)) for _ in range(200))
-        again = [estimate(numbers[np.concatenate([rows[i] for i in each])]) for each in drawn]
-        wide = 2 * 1.96 * 2**0.5 * np.std(again) * per
+        wide = self.width_again(numbers, estimate) * per
         if "would again be" in prediction.sentence:
             if wide > 0.02 * abs(shown[0]):
                 yield f"{prediction.sentence} {wide}"
             return
         low, high = shown[:2]
         if not 0.6 * wide < high - low < 2.2 * wide or not low <= estimate(numbers) * per <= high:
+            yield f"{prediction.sentence} {wide}"
+
+    def width_again(self, numbers, estimate):
+        """Return the width of the prediction interval, from rows drawn with replacement."""
+        random, part = np.random.default_rng(0), replicates_of(self.rows)
+        groups = np.arange(len(numbers)) if part is None else part
+        rows = [np.flatnonzero(groups == group) for group in np.unique(groups)]
+        drawn = (random.integers(len(rows), size=len(rows)) for _ in range(200))
+        again = [estimate(numbers[np.concatenate([rows[i] for i in each])]) for each in drawn]
+        return 2 * 1.96 * 2**0.5 * np.std(again)
+
+    def regime_repeated(self, prediction, regime, hits):
+        """Compare the scatter among seeds of the share of a regime with that of its rows."""
+        if f"would be {regime.predicate}" not in prediction.sentence:
+            return
+        low, high, level = numbers_in(prediction.sentence.removeprefix(OPENING))[:3]
+        wide = 100 * self.width_again(hits, np.mean)
+        if (
+            level != 95
+            or not 0.6 * wide < high - low < 2.2 * wide
+            or not low <= 100 * np.mean(hits) <= high
+        ):
             yield f"{prediction.sentence} {wide}"
 
     def hits(self, quantity, event):

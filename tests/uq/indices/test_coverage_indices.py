@@ -39,7 +39,7 @@ def test_indices_of_ishigami(samples, second_order):
         entry = sensitivities(ds)["outputs"]["y"]
         tally_indices(tally, entry, ISHIGAMI | (PAIRS if second_order else {}))
         tally.add("mean", 3.5, **summarised(ds)["outputs"]["y"]["mean_interval"])
-    tally.check()
+    tally.check(conservative=("mean",))  # it allows for jumps that the rows cannot exclude
 
 
 def test_indices_of_the_g_function():

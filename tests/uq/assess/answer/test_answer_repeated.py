@@ -80,7 +80,7 @@ def test_where_nothing_is_promised_the_share_is_said():
 @pytest.mark.slow
 def test_other_seeds_rank_first_one_of_the_inputs_that_are_named():
     """x4 explains 16/30 of the variance, x3 9/30."""
-    studies = [linear(samples=100, seed=seed) for seed in range(40)]
+    studies = [linear(samples=250, seed=seed) for seed in range(40)]
     rankings = [answer(asking(ds, outputs=["y"])).lead.ranking for ds in studies]
     leaders = [ranking.contributions[0].inputs[0] for ranking in rankings if ranking.contributions]
     named = [ranking.rivals for ranking in rankings if ranking.rivals]
