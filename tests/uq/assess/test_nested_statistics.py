@@ -16,7 +16,7 @@ from uq.errors import InputError
 from uq.result.elements import replicates_of
 from uq.result.nesting import one_of_each_sample
 from uq.result.result import Result
-from uq.stats.clusters import Clusters, dealt, linearised_means
+from uq.stats.clusters import Clusters, linearised_means, random_groups
 from uq.stats.intervals import mean_interval, share_interval
 from uq.stats.moments import sd_interval
 from uq.stats.order_statistics import quantile_interval
@@ -66,12 +66,12 @@ def test_unequal_samples_pull_by_their_rows():
 
 def test_groups_hold_whole_samples():
     of = Clusters(np.repeat(np.arange(300), 3), 300)
-    groups = dealt(of)
+    groups = random_groups(of)
     assert len(np.unique(groups)) == 32
     assert all(len(np.unique(groups[of == sample])) == 1 for sample in range(300))
     sizes = np.unique(groups, return_counts=True)[1]
     assert np.ptp(sizes) <= 3
-    assert dealt(np.arange(5)).tolist() == [0, 1, 2, 3, 4]
+    assert random_groups(np.arange(5)).tolist() == [0, 1, 2, 3, 4]
 
 
 def test_what_depends_on_the_sample_alone_has_the_interval_of_the_samples():
