@@ -271,6 +271,10 @@ def _no_coordinates(settings: Any) -> Mapping[str, Sequence[Any]]:
     return {}
 
 
+ROW_NAME = ("run", "runs")
+"""Singular and plural of what a row represents, by default."""
+
+
 @dataclass(frozen=True)
 class Model:
     """A model of a machine: its parameters, settings, outputs and functions.
@@ -333,7 +337,7 @@ class Model:
     block: int = 1
     references: tuple[str, ...] = ()
     headline: tuple[str, ...] = ()
-    row_name: tuple[str, str] = ("run", "runs")
+    row_name: tuple[str, str] = ROW_NAME
     uncertain: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def alone(self, output: str) -> "Model":

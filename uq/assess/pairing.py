@@ -213,7 +213,7 @@ class Pair:
         )
 
     def most_that_change_sides(self, sample: SelectedRows) -> float:
-        """Return the exact upper limit of a share of which a sample shows no case.
+        """Return the exact upper confidence limit of a share without an observed case.
 
         A share that has no hit among all rows in 2.5 % of samples: the upper end of the exact 95 %
         interval [1]_. Rows of a design that spreads evenly hit such a share more often.

@@ -69,10 +69,17 @@ def local_workers(
                 silence_logs=logging.CRITICAL,
             )
         stack.enter_context(cluster)
-        client = stack.enter_context(Client(cluster, set_as_default=False))
-        client.loop.asyncio_loop.set_exception_handler(_without_timeouts)
+        client = stack.enter_context(_client_of(cluster))
         stack.enter_context(undone(children.close))  # first: workers wait for their rows
         yield Workers(client, workload, row_limit, run=stack.enter_context(named(children)))
+
+
+def _client_of(server: LocalCluster | str, **options: Any) -> Client:
+    """Connect to a scheduler; late replies to the client say nothing."""
+    client = Client(server, set_as_default=False, **options)
+    loop: Any = client.loop
+    loop.asyncio_loop.set_exception_handler(_without_timeouts)
+    return client
 
 
 def _without_timeouts(loop: AbstractEventLoop, context: dict[str, Any]) -> None:
@@ -128,7 +135,7 @@ def remote_workers(
         _check_address(where, address)
         _check_certificates(where, encrypted=address.startswith("tls:"))
         try:
-            client = Client(address, set_as_default=False, timeout=_REMOTE_SECONDS)
+            client = _client_of(address, timeout=_REMOTE_SECONDS)
         except (OSError, ValueError, TypeError, RuntimeError) as error:  # also of its addresses
             reason = one_line(error)
             raise InputError(

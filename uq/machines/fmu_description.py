@@ -16,10 +16,11 @@ from zipfile import ZipFile
 
 from pydantic import Field, model_validator
 
+from uq.contract import ROW_NAME
 from uq.errors import InputError, described
 from uq.files.whole_files import file_there
 from uq.machines.machine_file import Headline, MachineName, Name, RowName, TomlTable, Uncertain
-from uq.machines.study_defaults import ROW_NAME, StudyDefaults
+from uq.machines.study_defaults import StudyDefaults
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 

@@ -12,11 +12,11 @@ from typing import Any, TypeVar, get_args, get_type_hints, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats, Model, Parameter
+from uq.contract import ROW_NAME, Floats, Model, Parameter
 from uq.errors import InputError
 from uq.machines.returned import Returned, read_returns
 from uq.machines.row_by_row import SEED, Fields, RowByRow, model_from
-from uq.machines.study_defaults import ROW_NAME, StudyDefaults
+from uq.machines.study_defaults import StudyDefaults
 
 
 def is_compiled(function: Callable[..., Any]) -> bool:

@@ -12,10 +12,11 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from uq.contract import ROW_NAME
 from uq.errors import InputError, nearest, one_line
 from uq.files.whole_files import file_there, node
 from uq.machines.row_by_row import SEED
-from uq.machines.study_defaults import ROW_NAME, StudyDefaults
+from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
 

@@ -19,7 +19,7 @@ from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import unknown
 from uq.text.quantities import fault_of_unit
 
-NONE = StudyDefaults()
+_NO_PROPOSALS = StudyDefaults()
 
 SEED = "seed"
 """Name of the argument that receives the seed of a row."""
@@ -40,7 +40,7 @@ def model_from(
     returned: Mapping[str, Returned],
     batch: "RowByRow",
     random: bool,
-    defaults: StudyDefaults = NONE,
+    defaults: StudyDefaults = _NO_PROPOSALS,
 ) -> Model:
     """Return a model without settings; arguments as those of `uq.contract.Model`.
 

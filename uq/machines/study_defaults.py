@@ -4,12 +4,9 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from uq.contract import Parameter
+from uq.contract import ROW_NAME, Parameter
 from uq.errors import nearest
 from uq.sampling.input_faults import fault_of, unknown
-
-ROW_NAME = ("run", "runs")
-"""Singular and plural of what a row represents, by default."""
 
 _WORDS = re.compile(r"[^\W\d_]([\w -]{0,20}\w)?")
 

@@ -14,13 +14,20 @@ from uq.assess.card import Card, Cause, card_of, statistic_name
 from uq.assess.card_numbers import Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
-from uq.text.numbers import TO_THESE_DIGITS, grouped, percent, percent_interval, printed
+from uq.text.numbers import TO_THESE_DIGITS, counted, grouped, percent, percent_interval, printed
 from uq.text.units import beside
 
 WIDTH = 80
 SHORT = 12
 """A card with no more lines has no blank ones and no headers of columns."""
 
+_HEADERS = {
+    "ST": "total share",
+    "S1": "share",
+    "delta": "delta, 0 to 1",
+    "pawn": "pawn, 0 to 1",
+}
+"""Index -> the header of its column; others are shares or have the unit of the output."""
 _COMMANDS = "--explain  --full  --json"
 _POINTS = "percentage points"
 _BRIEF = {"seconds": "s", "minutes": "min", "hours": "h"}
@@ -139,7 +146,7 @@ def _blocks(card: Card, *, is_short: bool) -> list[list[Line]]:
 
 
 def _title(card: Card) -> Line:
-    rows = f"{grouped(card.rows)} {card.row_name[card.rows != 1]}, {grouped(card.failed)} failed"
+    rows = f"{counted(card.rows, *card.row_name)}, {grouped(card.failed)} failed"
     text = _beside(f"{card.name}   {rows}", f"{card.model}, {card.design}")
     return Line(text, (0, len(card.name)))
 
@@ -260,7 +267,7 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     header = [
         ("CAUSES", ""),
         (
-            {"ST": "total share", "S1": "share"}.get(card.index, f"{card.index}, 0 to 1"),
+            _HEADERS.get(card.index, card.index),
             f"of {card.share_of}" if card.share_of else "",
         ),
         (f"{step} more", "changes it") if step else ("scatter halved", "(now)"),
@@ -294,19 +301,20 @@ def _share(cause: Cause) -> str:
 
 
 def _law(cause: Cause) -> str:
-    """Return the halved scatter, and that of now in brackets; short if it would be long."""
+    """Return the halved scatter and, in brackets, the present one; shortened to fit its column."""
     if cause.tightened is None:
         return ""
     if ";" in cause.tightened.law:
         return "each input"
-    law = cause.tightened.law
-    if len(law.replace("instead of ", "()")) > _LAW:
-        law = re.sub(r"(?<![-.\d])(\d\S*) to (?=\d)", "\\1–", law)
-    then, _, now = law.partition(" instead of ")
+    stated = cause.tightened.law
+    with_dashes = re.sub(r"(?<![-.\d])(\d\S*) to (?=\d)", "\\1–", stated)
+    for law in (stated, with_dashes):
+        then, _, now = law.partition(" instead of ")
+        if len(f"{then} ({now})") <= _LAW:
+            return printed(f"{then} ({now})")
     words = then.split()
-    if len(f"{then} ({now})") > _LAW:
-        while len(words) > 1 and not words[-1].lstrip("-")[:1].isdigit():
-            words.pop()
+    while len(words) > 1 and not words[-1].lstrip("-")[:1].isdigit():  # of the unit
+        words.pop()
     return printed(f"{' '.join(words)} ({now})")
 
 

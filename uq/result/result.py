@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.contract import Floats, Mask, Output
+from uq.contract import ROW_NAME, Floats, Mask, Output
 from uq.errors import InputError, choices, nearest
 from uq.result.element import Element
 from uq.result.elements import (
@@ -136,7 +136,7 @@ class Result:
     def row_name(self) -> tuple[str, str]:
         """Singular and plural of what a row represents: ``rod``, ``rods``."""
         singular, _, plural = str(self.dataset.attrs.get("row_name", "")).partition("/")
-        return (singular, plural) if plural else ("run", "runs")
+        return (singular, plural) if plural else ROW_NAME
 
     def counted_rows(self, count: int) -> str:
         """Return a number of rows by the name of what they represent: ``6 000 rods``."""

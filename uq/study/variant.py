@@ -26,7 +26,7 @@ def variant(study: Study, method: str | None = None, name: str | None = None) ->
     ----------
     study : Study
     method : str, optional
-        By default that of the study.
+        By default the design of the study.
     name : str, optional
         By default the name of the study, followed by the design.
 

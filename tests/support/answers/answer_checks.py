@@ -213,7 +213,7 @@ class Checker:
         return 2 * 1.96 * 2**0.5 * np.std(again)
 
     def regime_repeated(self, prediction, regime, hits):
-        """Compare the scatter among seeds of the share of a regime with that of its rows."""
+        """Compare the predicted share of a regime with its scatter over rows drawn again."""
         if f"would be {regime.predicate}" not in prediction.sentence:
             return
         low, high, level = numbers_in(prediction.sentence.removeprefix(OPENING))[:3]

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from computed import asking, computed, kinds, linear, study_of, with_output, wit
 
 import uq as api
 from benchmarks.cards import cards_on_page
-from uq.render.card import SHORT, WIDTH, card, lines_of
+from uq.render.card import SHORT, WIDTH, card, cause_columns, lines_of
 from uq.result.result import Result
 
 STUDIES = Path(__file__).parents[3] / "studies"
@@ -137,3 +138,8 @@ def test_rows_are_called_what_the_model_calls_them():
     assert str(card(ds)).splitlines()[0].startswith("pumps   1 run, 0 failed")
     named = card(ds.assign_attrs(row_name="pump/pumps"))
     assert "1 pump, 0 failed" in str(named)
+
+
+@pytest.mark.parametrize(("index", "header"), [("pawn", "pawn, 0 to 1"), ("mu_star", "mu_star")])
+def test_only_an_index_between_0_and_1_is_said_to_be_one(shipped, index, header):
+    assert cause_columns(replace(card(shipped).card, index=index))[0][1][0] == header

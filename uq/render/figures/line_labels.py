@@ -2,6 +2,7 @@
 
 import textwrap
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -111,21 +112,13 @@ def label_two_curves(
         return False
     middles = [float(np.interp(0.5, y, x)) for x, y in curves]
     first = int(np.argmin(middles))
-    to_axes = axes.transData + axes.transAxes.inverted()
-    crossing = [to_axes.transform((line, 0))[0] for line in lines]
     places = {first: ((0.72, 0.6, 0.84), "right", -4), 1 - first: ((0.28, 0.4, 0.08), "left", 4)}
     for i, (heights, side, shift) in places.items():
         x, y = curves[i]
-
-        def room(height: float, x: Floats = x, y: Floats = y, side: int = shift) -> float:
-            at = to_axes.transform((float(np.interp(height, y, x)), 0))[0]
-            beside = [abs(line - at) for line in crossing if (line - at) * side > 0]
-            return min([_ENOUGH, *beside])
-
-        height = max(heights, key=room)
+        points = [(float(np.interp(height, y, x)), height) for height in heights]
         axes.annotate(
             texts[i],
-            (float(np.interp(height, y, x)), height),
+            max(points, key=partial(_room, axes, shift, lines)),
             xytext=(shift, 0),
             textcoords="offset points",
             ha=side,
@@ -135,6 +128,16 @@ def label_two_curves(
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
         )
     return True
+
+
+def _room(axes: Axes, towards: int, lines: list[float], point: tuple[float, float]) -> float:
+    """Return the distance to the next vertical line on one side, relative to the panel.
+
+    Distances at which a label fits count as equal.
+    """
+    to_axes = axes.transData + axes.transAxes.inverted()
+    at, *others = (to_axes.transform((x, 0))[0] for x in (point[0], *lines))
+    return min([_ENOUGH, *(abs(x - at) for x in others if (x - at) * towards > 0)])
 
 
 def note_assumed_scale(axes: Axes, result: Result, element: Element) -> None:

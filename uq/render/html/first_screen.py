@@ -12,7 +12,7 @@ from uq.assess.card_numbers import Headline
 from uq.render.card import cause_columns, interval_of, label_of, number_of
 from uq.render.html.cells import SHARE, Cell, HtmlTable
 from uq.text.keys import key_of
-from uq.text.numbers import capitalized, grouped, printed
+from uq.text.numbers import capitalized, counted, grouped, printed
 
 MOST_TILES = 4
 
@@ -65,7 +65,7 @@ def first_screen(card: Card, answer: Answer, figure: Markup) -> dict[str, Any]:
         "others": [_tile(line, card) for line in card.headline if line not in tiles],
         "figure": figure,
         "causes": _causes(card, answer),
-        "rows": f"{grouped(card.rows)} {card.row_name[card.rows != 1]}",
+        "rows": counted(card.rows, *card.row_name),
         "failed": grouped(card.failed),
     }
 
