@@ -280,7 +280,7 @@ def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
             case "chance":
                 yield "expect little of tolerances: chance decides"
             case "source":
-                yield f"add a source for {words}"
+                yield f"state in 'source' how well {words} is known"
             case "rows" if entry.rows is not None:
                 yield f"study {grouped(entry.rows)} {result.row_name[1]} in all"
             case "failed":

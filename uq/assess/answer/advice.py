@@ -128,8 +128,9 @@ def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
         is_single = len(unstated) == 1
         yield Advice(
             "source",
-            f"Add a 'source' for {called_together(unstated)} (given, inferred, fitted, assumed or"
-            f" chosen): {'it matters' if is_single else 'they matter'} most{to_what}.",
+            f"State in 'source' how {called_together(unstated)} {'is' if is_single else 'are'} known"
+            " (given, inferred, fitted, assumed or chosen):"
+            f" {'it matters' if is_single else 'they matter'} most{to_what}.",
             unstated,
         )
     elif not assumed and lasting:

@@ -48,9 +48,24 @@ def mark(source: str) -> str:
     return (match[1] or match[2]) if match else ""
 
 
+def source_of(result: Result, name: str) -> str:
+    """Return the source of a law or a fixed value; of a law that has none, that of its nominal."""
+    source = str(result.dataset[name].attrs.get("source", ""))
+    return source if _states_source(result, name) else f"none; its nominal value: {source}"
+
+
 def mark_of(result: Result, name: str) -> str:
-    """Return the quality of a parameter of a result; "" also without a source."""
-    return mark(str(result.dataset[name].attrs.get("source", "")))
+    """Return the quality of a parameter of a result; "" also without a source.
+
+    The scatter of a law without a source is at best as well known as an assumed nominal value.
+    """
+    quality = mark(source_of(result, name))
+    return quality if _states_source(result, name) or quality == ASSUMED else ""
+
+
+def _states_source(result: Result, name: str) -> bool:
+    laws = result.study.uncertain
+    return name not in laws or bool(laws[name].source)
 
 
 class DisplayUnit(NamedTuple):
@@ -252,7 +267,7 @@ class NumberTarget:
 
 
 def assumptions(result: Result) -> dict[str, Fact]:
-    """Return the assumed laws and fixed values, and the laws without a source.
+    """Return the assumed laws and fixed values, and the laws that do not say how they are known.
 
     Parameters
     ----------
@@ -262,8 +277,8 @@ def assumptions(result: Result) -> dict[str, Fact]:
     Returns
     -------
     dict of str to Fact
-        ``assumed_laws``, ``assumed_values`` and ``laws_without_source``, as far as there are any:
-        the ``inputs``, and the number that they are ``of``.
+        ``assumed_laws``, ``assumed_values``, ``laws_without_source`` and ``laws_without_quality``,
+        as far as there are any: the ``inputs``, and the number that they are ``of``.
     """
     study = result.study.uncertain
     tied = [name for name, law in study.items() if isinstance(law, Tied)]
@@ -283,7 +298,16 @@ def assumptions(result: Result) -> dict[str, Fact]:
             values,
             fixed,
         ),
-        "laws_without_source": ("Laws without a source", unstated, laws),
+        "laws_without_source": (
+            "Laws without a source",
+            [name for name in unstated if not _states_source(result, name)],
+            laws,
+        ),
+        "laws_without_quality": (
+            "Laws whose source does not say given, inferred, fitted, assumed or chosen",
+            [name for name in unstated if _states_source(result, name)],
+            laws,
+        ),
     }
     return {
         key: Fact(

@@ -5,7 +5,7 @@ from math import floor, log10
 
 import numpy as np
 
-from uq.assess.answer.wording import DisplayUnit, mark, unit_of_input
+from uq.assess.answer.wording import DisplayUnit, mark_of, source_of, unit_of_input
 from uq.assess.sampled_laws import PROBABILITIES, compare, laws_and_values, weights_of_samples
 from uq.contract import Floats
 from uq.render.figures.words import meaning_of, symbol_of, unbroken
@@ -124,5 +124,4 @@ def _name(result: Result, name: str) -> Cell:
 
 
 def _source(result: Result, name: str) -> tuple[Cell, Cell]:
-    source = str(result.dataset[name].attrs["source"])
-    return Cell(mark(source)), Cell(source)
+    return Cell(mark_of(result, name)), Cell(source_of(result, name))

@@ -59,7 +59,8 @@ def test_a_law_of_which_no_source_says_how_well_it_is_known_is_asked_for(lifetim
     unstated = ds.copy()
     unstated["rate"].attrs["source"] = "the supplier"
     first, *_, last = answer(unstated).advice
-    assert first.rule == "source" and first.text.startswith("Add a 'source' for rate (given")
+    assert first.rule == "source"
+    assert first.text.startswith("State in 'source' how rate is known (given")
     assert last.text == "Nothing else is needed: all questions of the study are settled."
 
 

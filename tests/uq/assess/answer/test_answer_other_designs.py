@@ -11,7 +11,9 @@ from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.leading_level import intermingled
 from uq.assess.answer.rankings import Ranking
+from uq.assess.answer.wording import assumptions, mark_of, source_of
 from uq.render.html.answer import fragment
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 
 
@@ -104,5 +106,24 @@ def test_assumed_laws_and_values_are_listed():
     }
     conclusions = answer(computed(study_of(tables)))
     assert conclusions.assumptions[0] == "1 of 2 laws is assumed: rate."
-    assert conclusions.assumptions[-1] == "Laws without a source: depth."
+    assert conclusions.assumptions[-1] == (
+        "Laws whose source does not say given, inferred, fitted, assumed or chosen: depth."
+    )
     assert "Assumptions</summary><ul><li>1 of 2 laws" in fragment(conclusions)
+
+
+def test_a_law_without_a_source_is_known_no_better_than_an_assumed_nominal_value():
+    tables = {
+        "study": {"name": "wear", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 20, "seed": 1},
+        "uncertain": {
+            "rate": {"distribution": "lognormal", "median": 2e-10, "sigma": 0.5},
+            "depth": {"distribution": "lognormal", "median": 2.5e-4, "sigma": 0.1},
+        },
+    }
+    result = Result.of(computed(study_of(tables)))
+    result.dataset["rate"].attrs["source"] = "given: the supplier"
+    result.dataset["depth"].attrs["source"] = "assumed: the default of the function"
+    assert [mark_of(result, name) for name in ("rate", "depth")] == ["", "assumed"]
+    assert source_of(result, "rate") == "none; its nominal value: given: the supplier"
+    assert assumptions(result)["laws_without_source"].members["inputs"] == ["rate"]
