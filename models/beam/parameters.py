@@ -235,7 +235,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "largest_worn_depth": Output(
         "m",
-        "larger worn depth of the two sites at the instant, at most the last of the depths",
+        "larger worn depth of the two sites, at most the last of the depths, at the instant",
         dims=("instant",),
     ),
     "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),

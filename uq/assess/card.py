@@ -34,6 +34,8 @@ from uq.text.numbers import capitalized, counted, grouped, percent
 from uq.text.units import readable
 
 MOST_CAUSES = 4
+STUDY = "study"
+"""Begins the advice on the number of rows."""
 
 
 class Cause(NamedTuple):
@@ -269,8 +271,9 @@ def _moved(lead: Quantity | None, error: Any) -> str:
 
 
 def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
-    """Yield each piece of advice in a few words, the most urgent first."""
-    for entry in advice:
+    """Yield each piece of advice in a few words, the most urgent first, more rows second."""
+    first, others = [*advice[:1]], [*advice[1:]]
+    for entry in first + sorted(others, key=lambda entry: entry.rule != "rows"):
         words = called_together(entry.inputs) if entry.inputs else ""
         match entry.rule:
             case "measure":
@@ -280,9 +283,10 @@ def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
             case "chance":
                 yield "expect little of tolerances: chance decides"
             case "source":
-                yield f"state in 'source' how well {words} is known"
+                verb = "is" if len(entry.inputs) == 1 else "are"
+                yield f"state in 'source' how {words} {verb} known"
             case "rows" if entry.rows is not None:
-                yield f"study {grouped(entry.rows)} {result.row_name[1]} in all"
+                yield f"{STUDY} {grouped(entry.rows)} {result.row_name[1]} in all"
             case "failed":
                 again = f"uq rerun {result.file} --failed{result.model_option}"
                 yield f"fix the failed rows, then {again}"

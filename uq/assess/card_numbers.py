@@ -98,7 +98,8 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
         return key_of("quantities", quantity.name, "promise", name, verb="answer")
 
     covered, confidence = 100 * promise.coverage, 100 * promise.confidence
-    name = f"{covered:g}/{confidence:g} {'life' if quantity.is_life else 'bound'}"
+    ends_well = bool(findings.result.outputs[quantity.output].success)
+    name = f"{covered:g}/{confidence:g} {'life' if quantity.is_life and not ends_well else 'bound'}"
     bounds = {"lower": (promise.lower, -inf), "upper": (promise.upper, inf)}
     both = isfinite(promise.lower) and isfinite(promise.upper)
     for side, (bound, towards) in bounds.items():
@@ -147,7 +148,8 @@ def _of_range(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
     for life in quantity.b_lives:
         if life.key[-1] == "B10" and isfinite(life.estimate.value):
             path = key_of("outputs", quantity.name, *life.key)
-            yield Headline(path, "B10", life.estimate, unit, shown)
+            label = "10 % quantile" if findings.result.outputs[quantity.output].success else "B10"
+            yield Headline(path, label, life.estimate, unit, shown)
     low, high = likely.low.value, likely.high.value
     if isfinite(low) and isfinite(high):
         yield Headline(key("low"), "90 % between", Estimate(nan, low, high), unit, shown)

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import isnan
 from textwrap import wrap
 from typing import NamedTuple
@@ -10,7 +11,7 @@ from markupsafe import Markup
 
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import DisplayUnit, called_together
-from uq.assess.card import Card, Cause, card_of, statistic_name
+from uq.assess.card import STUDY, Card, Cause, card_of, statistic_name
 from uq.assess.card_numbers import Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
@@ -113,15 +114,21 @@ def lines_of(card: Card) -> list[Line]:
 
 
 def _lines_of(card: Card) -> list[Line]:
-    short = [line for block in _blocks(card, is_short=True) for line in block]
+    blocks = _blocks(card, is_short=True, is_cut=False)
+    short = _with_commands([line for block in blocks for line in block])
     if len(short) <= SHORT:
-        return _with_commands(short)
-    blocks = [block for block in _blocks(card, is_short=False) if block]
-    lines = [line for block in blocks for line in (Line(""), *block)][1:]
-    return _with_commands(lines)
+        return short
+    fewer = replace(card, causes=card.causes[:-1])
+    for shown, is_cut in ((card, False), (fewer, False), (card, True)):
+        blocks = [block for block in _blocks(shown, is_short=False, is_cut=is_cut) if block]
+        lines = [line for block in blocks for line in (Line(""), *block)][1:]
+        lines = _with_commands(lines)
+        if len(lines) <= _MOST:
+            break
+    return lines
 
 
-def _blocks(card: Card, *, is_short: bool) -> list[list[Line]]:
+def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
     leading = [line for line in card.headline if line.leads]
     others = [line for line in card.headline if not line.leads]
     warning = [*_warning(card)]
@@ -133,14 +140,14 @@ def _blocks(card: Card, *, is_short: bool) -> list[list[Line]]:
     if card.besides and table:
         table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
     assumed = [] if warning or not card.assumptions else _labelled("!", (card.assumptions,))
-    causes = [*_causes(card, is_short=is_short)]
+    causes = [*_causes(card, is_short=is_short, is_cut=is_cut)]
     return [
         [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],
         *([causes, main, table] if card.indices_first else [main, table, causes]),
         [
             *_labelled("CHECKS", card.checks),
             *(line._replace(warns=True) for line in assumed),
-            *_labelled("NEXT", _fitting(card.next)),
+            *_labelled("NEXT", _fitting(card.next, is_cut=is_cut)),
         ],
     ]
 
@@ -229,7 +236,7 @@ def _warning(card: Card) -> Iterator[Line]:
         yield from (line._replace(warns=True) for line in _labelled("!", ("; ".join(clauses),)))
 
 
-def _causes(card: Card, *, is_short: bool) -> Iterator[Line]:
+def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
     if card.no_causes:
         is_stated = "not settled" in card.no_causes
         reason = card.no_causes if is_stated else f"not settled: {card.no_causes}"
@@ -255,9 +262,13 @@ def _causes(card: Card, *, is_short: bool) -> Iterator[Line]:
             widths[place] -= min(too_wide, max(widths[place] - least, 0))
     lines = [[pair[0] for pair in header], [pair[1] for pair in header], *rows]
     for cells in lines:
-        parts = [f"{_cut(cell, width):<{width}}" for cell, width in zip(cells, widths, strict=True)]
-        if line := "  ".join(parts).rstrip():
-            yield Line(f"  {line}"[:WIDTH], (2, 8) if cells is lines[0] else (0, 0))
+        names = wrap(cells[0], widths[0], subsequent_indent="  ")
+        first, *others = [cells[0]] if is_cut or not names else names
+        for named in ([first, *cells[1:]], *([other] for other in others)):
+            padded = zip(named, widths[: len(named)], strict=True)
+            parts = [f"{_cut(cell, width):<{width}}" for cell, width in padded]
+            if line := "  ".join(parts).rstrip():
+                yield Line(f"  {line}"[:WIDTH], (2, 8) if cells is lines[0] else (0, 0))
 
 
 def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
@@ -277,7 +288,7 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     if tolerances:
         first = tolerances[0]
         name, now = printed(statistic_name(first)), printed(_value(first, first.before.value))
-        header[3] = (f"{name}, half scatter" if step else name, f"(now {now})")
+        header[3] = (f"half scatter: {name}" if step else name, f"(now {now})")
     rows = [
         [
             called_together(cause.contribution.inputs).removeprefix("both "),
@@ -351,11 +362,11 @@ def _cut(text: str, width: int) -> str:
     return text if len(text) <= width else f"{text[: width - 1]}…"
 
 
-def _fitting(clauses: Sequence[str]) -> tuple[str, ...]:
-    """Return as many clauses as fit beside the commands, at least the first."""
-    room = WIDTH - len(_COMMANDS) - 12
+def _fitting(clauses: Sequence[str], *, is_cut: bool) -> tuple[str, ...]:
+    """Return the first clause, and the second if it tells the rows, or both fit on one line."""
     both = "; ".join(clauses[:2])
-    return tuple(clauses[:2] if len(printed(both)) <= room else clauses[:1])
+    fits = len(printed(both)) <= WIDTH - len(_COMMANDS) - 12
+    return tuple(clauses[: 2 if fits or (STUDY in both and not is_cut) else 1])
 
 
 def _labelled(label: str, clauses: Sequence[str]) -> list[Line]:

@@ -11,6 +11,7 @@ from computed import asking, computed, kinds, linear, study_of, with_output, wit
 
 import uq as api
 from benchmarks.cards import cards_on_page
+from uq.assess.answer.wording import called_together
 from uq.render.card import SHORT, WIDTH, card, cause_columns, lines_of
 from uq.result.result import Result
 
@@ -143,3 +144,55 @@ def test_rows_are_called_what_the_model_calls_them():
 @pytest.mark.parametrize(("index", "header"), [("pawn", "pawn, 0 to 1"), ("mu_star", "mu_star")])
 def test_only_an_index_between_0_and_1_is_said_to_be_one(shipped, index, header):
     assert cause_columns(replace(card(shipped).card, index=index))[0][1][0] == header
+
+
+def shown_with(card, **changes):
+    return [line.text for line in lines_of(replace(card, **changes))]
+
+
+def named(card, *names):
+    """Return the causes of a card with other inputs."""
+    cause = card.causes[0]
+    contribution = cause.contribution
+    indices = contribution.indices[:1] * len(names)
+    return cause._replace(contribution=replace(contribution, inputs=names, indices=indices))
+
+
+def test_the_names_of_causes_are_whole_where_there_is_room(shipped):
+    base = card(shipped).card
+    first = named(base, "lateral_support_stiffness", "rotary_flexural_rigidity")
+    lines = shown_with(base, causes=(first,))
+    words = {word for line in lines for word in line.split()}
+    assert {"lateral", "support", "stiffness", "and", "rotary", "flexural", "rigidity"} <= words
+    assert not any("…" in line for line in lines)
+
+
+def test_many_long_causes_leave_the_card_on_its_screen(shipped):
+    base = card(shipped).card
+    causes = [named(base, *(f"{a}_{'x' * 30}" for a in "abc")) for _ in range(4)]
+    lines = shown_with(base, causes=tuple(causes), subject="word " * 20)
+    assert len(lines) <= 24 and any("…" in line for line in lines)
+
+
+def test_too_few_rows_come_with_the_number_that_suffices(shipped):
+    base = card(shipped).card
+    advice = ("measure the wear coefficient and the contact stiffness", "study 6 007 rods in all")
+    lines = shown_with(base, next=advice, subject="word " * 20)
+    assert "study 6 007 rods in all" in re.sub(r"\s+", " ", " ".join(lines[-3:]))
+
+
+def test_numbers_that_are_the_same_word_are_not_joined():
+    inputs = ["initial_phase_2", "synchronous_speed_2"]
+    assert called_together(inputs) == "initial phase 2 and synchronous speed 2"
+    assert called_together(["mole_friction", "bar_friction"]) == "mole and bar friction"
+
+
+def test_a_time_of_success_has_no_words_of_failure():
+    asked = {"coverage": 0.9, "confidence": 0.95}
+    ds = life(np.random.default_rng(0).lognormal(1, 0.3, 400), tolerance=asked)
+    shown = str(card(ds))
+    assert "90/95 life" in shown and "B10" in shown
+    ds["life"].attrs["success"] = "the machine has started"
+    shown = str(card(ds))
+    assert "90/95 bound" in shown and "10 % quantile" in shown
+    assert " life " not in shown and "B10" not in shown

@@ -128,8 +128,8 @@ def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
         is_single = len(unstated) == 1
         yield Advice(
             "source",
-            f"State in 'source' how {called_together(unstated)} {'is' if is_single else 'are'} known"
-            " (given, inferred, fitted, assumed or chosen):"
+            f"State in 'source' how {called_together(unstated)}"
+            f" {'is' if is_single else 'are'} known (given, inferred, fitted, assumed or chosen):"
             f" {'it matters' if is_single else 'they matter'} most{to_what}.",
             unstated,
         )

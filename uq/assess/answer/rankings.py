@@ -329,9 +329,13 @@ def _rivals(measured: Sequence[Measured]) -> tuple[str, ...]:
     return tuple(candidate.name for candidate in measured if are_tied(first, candidate, AGAIN))
 
 
+_SHARES = {"S1": "the share (S1)", "ST": "the total share (ST)"}
+
+
 def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, float, bool]:
     """Return the reason why no index counts, the factor on the rows, and whether none is large."""
-    text = f"{kind.key} of {called(first.name)} is {first.index.value:z.2f}"
+    name = _SHARES.get(kind.key, kind.key)
+    text = f"{name} of {called(first.name)} is {first.index.value:z.2f}"
     which = f"the {'main driver' if of_event else 'ranking of the inputs'} is not settled"
     if not isfinite(first.half):
         return f"{which}: {text}, without an interval", nan, False

@@ -147,7 +147,7 @@ def called(name: str) -> str:
 
 
 def called_together(names: Sequence[str]) -> str:
-    """Return several inputs in words: ``both bearing constants``, ``stiffness x and stiffness y``.
+    """Return several inputs in words: ``both bearing constants``, ``mole and bar friction``.
 
     Parameters
     ----------
@@ -157,6 +157,11 @@ def called_together(names: Sequence[str]) -> str:
     for name in names:
         groups.setdefault(twin_of(name), []).append(name)
     words = [_twins_called(stem, twins) for stem, twins in groups.items()]
+    if len(names) == len(words) == 2:
+        first, second = (called(name).split() for name in names)
+        while min(len(first), len(second)) > 1 and first[-1] == second[-1] and first[-1].isalpha():
+            first, words[0] = first[:-1], " ".join(first[:-1])
+            second = second[:-1]
     return joined(words)
 
 

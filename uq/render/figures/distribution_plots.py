@@ -206,7 +206,9 @@ def lifetime(
         curve = curve.isel(time=thinned(curve.sizes["time"]))
         time = curve["time"].values / unit.size
         colour, line = curve_style(i, element, chosen)
-        words = label(result, element, never=float(curve["never"]))
+        words = label(result, element) or "estimate"
+        if (never := float(curve["never"])) > 0:
+            words += literal(f", never: {percent(never)}")
         failed = 1 - curve["survival"].values
         panel.step(time, failed, where="post", color=colour, ls=line, lw=0.8, label=words)
         curves.append((time, failed))

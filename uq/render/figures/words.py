@@ -15,7 +15,7 @@ from uq.render.figures.figure import COLOURS
 from uq.result.elements import Element, Floats
 from uq.result.result import Result
 from uq.text.literals import plain
-from uq.text.numbers import capitalized, grouped, minus, percent, quantity
+from uq.text.numbers import capitalized, grouped, minus, quantity
 from uq.text.units import IN_TEXT, LETTERS, WORD, ReadableUnit, unit_of
 from uq.text.units import powers as powers
 from uq.text.units import symbol as as_text
@@ -131,10 +131,9 @@ def place_in_words(result: Result, element: Element) -> str:
     return ", ".join(words)
 
 
-def label(result: Result, element: Element, never: float = 0.0) -> str:
-    """Return the label of a curve: element coordinates, and the share of infinite lives."""
-    share = f"never: {percent(never)}" if never > 0 else ""
-    return literal(minus(", ".join(filter(None, (place_in_words(result, element), share)))))
+def label(result: Result, element: Element) -> str:
+    """Return the coordinates of an element, by which its curve is labelled."""
+    return literal(minus(place_in_words(result, element)))
 
 
 def row_counts(result: Result, chosen: Sequence[Element]) -> str:

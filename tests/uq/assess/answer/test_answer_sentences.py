@@ -256,7 +256,7 @@ def test_nothing_is_settled_without_intervals(method):
     )  # no direction is called unclear
     if method == "saltelli":
         assert ranking.sentence.startswith(
-            "The ranking of the inputs is not settled: ST of x4 is 0.5"
+            "The ranking of the inputs is not settled: the total share (ST) of x4 is 0.5"
         )
         assert ranking.sentence.endswith(", without an interval.")
 

@@ -23,7 +23,7 @@ def test_lifetime_figure_shows_share_band_and_what_never_ends():
     figure = plots.lifetime(ds, "life")
     (axes,) = figure.axes
     assert axes.get_xlabel() == "Meaning of life [days]"
-    assert "never: 25.0 %" in words(figure) and "80 runs" in words(figure)
+    assert "estimate, never: 25.0 %" in words(figure) and "80 runs" in words(figure)
     (line,) = axes.lines[:1]
     assert line.get_xdata()[0] == pytest.approx(5) and line.get_ydata()[-1] == pytest.approx(0.75)
     band = axes.collections[0].get_paths()[0].get_extents()
