@@ -172,10 +172,10 @@ def limit_of(
     many = f"{percent_range(shown.low, shown.high)} {predicate}"
     low, high = sorted(edges[-2:])
     ends = unit.between(low, high)
-    parts = f"the best of {len(shares)} parts of {names} ({ends})"
-    why = f"even in {parts}, {many}{plain.averaged}"
+    extreme = "highest" if is_lower else "lowest"  # other parts may have a smaller share by chance
+    why = f"in the {extreme} of {len(shares)} parts of {names} ({ends}), {many}{plain.averaged}"
     if curve.of_values:
-        why = f"even if {names} is {last.place}, {many}"
+        why = f"if {names} is {last.place}, {many}"
     if best.low <= RARE:
         why += f"; it is not settled whether {plain.few} do"
     return replace(plain, why=why)
