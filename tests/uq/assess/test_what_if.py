@@ -259,6 +259,26 @@ def test_on_the_command_line(result, tmp_path):
     assert document["effective_rows"] < 1000 and set(document["outputs"]) == {"life", "y"}
 
 
+def test_a_table_shows_the_share_that_never_ends_and_differences_in_points(tmp_path):
+    path = tmp_path / "rows.nc"
+    rows = computed(study(settings={"never_above": 1.0}))
+    rows.to_netcdf(path)
+    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8"])
+    never = re.search(
+        r"\n  never ends +(\S+) % +(\S+) % +(\S+) points", run.output.partition("\ny")[0]
+    )
+    before, after, apart = map(float, never.groups())
+    share = 100 * np.isposinf(rows["life"].values).mean()
+    assert before == pytest.approx(share, abs=0.05) and after < before
+    assert apart == pytest.approx(after - before, abs=0.11)
+    assert re.search(r"\n  P\(> 0.8 s\) +\S+ % +\S+ % +\S+ points", run.output)
+    assert "Differences of probabilities are in percentage points." in " ".join(run.output.split())
+    document = what_if_facts(reweighted_summary(Result(rows), {"uncertain.z.sd": 0.8})).json
+    assert 100 * document["outputs"]["life"]["never_ending"]["value"] == pytest.approx(
+        after, abs=0.05
+    )
+
+
 @pytest.mark.slow
 def test_differences_from_fresh_rows_hold_zero():
     lines = [line for line in counted.what_if(1000) if line.given]
