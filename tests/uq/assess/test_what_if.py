@@ -174,6 +174,15 @@ def test_where_no_row_can_be_is_refused(result):
         what_if(result, {"uncertain.x.sd": 1.0})
     with pytest.raises(InputError, match=r"\[uncertain.z\] sdd = 1.0: no such argument"):
         what_if(result, {"uncertain.z.sdd": 1.0})
+    for entry, meant in (
+        ("a.sigma", "'uncertain.a.sigma'"),
+        ("uncertain.sigma", "'uncertain.a.sigma'"),
+        ("uncertain.sd", "'uncertain.z.sd'"),
+        ("distribution", "'uncertain.a.distribution' or 'uncertain.z.distribution'"),
+        ("a.sigm", "'uncertain.a.sigma'"),
+    ):
+        with pytest.raises(InputError, match=f"did you mean {meant}"):
+            what_if(result, {entry: 1.0})
     with pytest.raises(InputError, match="'fixed.c' cannot be changed"):
         what_if(result, {"fixed.c": 1.0})
     with pytest.raises(InputError, match="times and level of 'a' cannot be changed"):
