@@ -247,9 +247,9 @@ def _named(result: Result, name: str, aggregated: bool) -> list[IndexTarget]:
     written, name = name, canonical(name)
     form, inside, _ = split_name(name)
     if (output := inside.partition("[")[0]) in result.dataset and (text := threshold_text(written)):
-        read_threshold(
-            "threshold", text, output, result.dataset[output].attrs["units"]
-        )  # or refuse it
+        units = result.dataset[output].attrs["units"]
+        read_threshold("threshold", text, output, units)  # or refuse it
+        name = canonical(written, units)
     if is_whole(inside):
         every = list(wholes(_elements(result, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]

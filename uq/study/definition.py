@@ -264,6 +264,7 @@ def study_from_text(
     file = StudyFile.model_validate(data)
     settings, _ = read_settings(study_model, file.settings)
     study_model = study_model.given(settings)
+    file = file.in_units({name: output.unit for name, output in study_model.outputs.items()})
     outputs = file.analysis.outputs or tuple(study_model.outputs)
     uncertain = {name: law for name, law in entries.items() if not isinstance(law, Tied)}
     table = columns[file.design.file] if file.design.file and file.design.method in IMPORTED else {}
