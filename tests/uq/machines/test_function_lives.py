@@ -61,6 +61,9 @@ def test_a_life_in_hours_is_asked_for_in_hours_or_days(uq, write_function):
     assert [asked.loc["life", f"P(<{t})"] for t in (2000.0, 2400.0)] == pytest.approx(shares)
     full = uq("summary", "own.nc", "--full").out
     assert "P(> 2000 hours)" in full and "P(< 100 days)" in full
+    assert "P(life < 100 days)" in uq("sensitivity", "own.nc", "--output", "P(life < 2400 h)").out
+    wrong = uq("sensitivity", "own.nc", "--output", "P(life < 50 days)")
+    assert "no such event 'P(life<1200.0)'" in wrong.err
 
 
 def test_a_threshold_with_a_unit_waits_for_the_outputs(uq, write_function):
