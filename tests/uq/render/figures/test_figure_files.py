@@ -211,7 +211,7 @@ def test_a_figure_that_does_not_exist_is_refused(lives, options, message, tmp_pa
 
 @pytest.mark.parametrize("text", ["84", "84 s", "wide", "1mm", "9 m"])
 def test_a_width_that_is_none_is_refused(text):
-    with pytest.raises(InputError, match="--width"):
+    with pytest.raises(InputError, match="--width .* 50 to 500 mm with its unit, such as 84mm"):
         width_in_metres(text)
 
 
