@@ -12,6 +12,10 @@ _TIMES = {"min": "minutes", "h": "hours", "d": "days", "a": "years"}
 _SECONDS = {"min": 60, "h": 3600, "d": 86400, "a": 31557600}
 _PREFIXES = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
 _BASES = {*PREFIXED, "Ω"}
+_UNPREFIXED = (
+    "g t K degC mol cd T H S C Wb lm lx l L bar atm eV Ah Wh VA dB ppm rpm Bq Gy Sv"
+    " cycle cycles revolutions turns strokes starts impacts counts"
+).split()  # known, too, but shown without a prefix
 _OTHER_NAMES = {"second": "s", "seconds": "s", "Ω": "ohm", "ohms": "ohm"}
 _DECODED = {word: name for name, word in _TIMES.items()} | {
     "seconds": "s",
@@ -137,6 +141,23 @@ def fault_of_unit(unit: str) -> str:
     if unit == "1" or (unit and place == len(unit)):
         return ""
     return "write its factors with their powers, such as 'N m-1', or '1' for a pure number"
+
+
+def unknown_factor(unit: str) -> str:
+    """Return the first factor of a unit that is none of the usual units; "" if all are."""
+    if fault_of_unit(unit):
+        return unit
+    for _, symbol, _ in [] if unit == "1" else _PART.findall(unit):
+        if _of_symbol(symbol)[0] in {*_BASES, "1"} or symbol in _UNPREFIXED:
+            continue
+        if symbol[0] not in _PREFIXES or symbol[1:] not in _UNPREFIXED:
+            return str(symbol)
+    return ""
+
+
+def nearest_unit(symbol: str) -> str:
+    """Return `nearest` of the usual units."""
+    return nearest(symbol, [*_TIMES, *_BASES, *_UNPREFIXED, "deg"])
 
 
 def converted(value: float, units: str) -> float:
