@@ -213,7 +213,7 @@ def chosen(
         for target in _named(result, name, asked.aggregates)
     ]
     if not named and isinstance(output, str):
-        output = canonical(output)
+        output = _canonical(result, output)
         form, inside, threshold = split_name(output)
         if is_whole(inside) and form == "P":
             raise InputError(
@@ -244,12 +244,8 @@ def _suits(method: SensitivityMethod, target: IndexTarget) -> bool:
 
 def _named(result: Result, name: str, aggregated: bool) -> list[IndexTarget]:
     """Return the targets that a user means by a name; none for an unknown name."""
-    written, name = name, canonical(name)
+    name = _canonical(result, name)
     form, inside, _ = split_name(name)
-    if (output := inside.partition("[")[0]) in result.dataset and (text := threshold_text(written)):
-        read_threshold(
-            "threshold", text, output, result.dataset[output].attrs["units"]
-        )  # or refuse it
     if is_whole(inside):
         every = list(wholes(_elements(result, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]
@@ -261,6 +257,17 @@ def _named(result: Result, name: str, aggregated: bool) -> list[IndexTarget]:
     has_whole = aggregated and name in result.dataset and len(_elements(result, name)) > 1
     whole = _named(result, whole_name(name), aggregated) if has_whole else []
     return [*(untransformed or targets_of(result, name)), *whole]
+
+
+def _canonical(result: Result, written: str) -> str:
+    """Return the name of a target, a threshold in the unit of its output."""
+    name = canonical(written)
+    output = split_name(name)[1].partition("[")[0]
+    if output not in result.dataset or not (text := threshold_text(written)):
+        return name
+    units = result.dataset[output].attrs["units"]
+    read_threshold("threshold", text, output, units)  # or refuse it
+    return canonical(written, units)
 
 
 def _as_stored(name: str, element: str, candidates: Sequence[IndexTarget]) -> str:

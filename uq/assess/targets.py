@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -267,12 +268,12 @@ def split_name(name: str) -> tuple[str, str, str]:
     return "", name, ""
 
 
-def canonical(name: str) -> str:
+def canonical(name: str, units: str = "1") -> str:
     """Return the name of a target, of ``P(life < 24 hours)`` that is ``P(life<86400.0)``."""
     match = _EVENT.fullmatch(name)
     if match is None:
         return name
-    for read in (float, read_quantity):
+    for read in (float, partial(read_quantity, units=units)):
         with suppress(ValueError):
             return f"P({match[1]}{match[2]}{float(read(match[3]))!r})"
     return f"P({match[1]}{match[2]}{match[3]})"

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from typing import Any
 
 import pandas as pd
@@ -14,7 +15,7 @@ from uq.assess.summary import Summary, summarise
 from uq.assess.summary_facts import summary_facts
 from uq.assess.summary_table import table_of
 from uq.contract import Parameter
-from uq.errors import InputError, nearest
+from uq.errors import InputError
 from uq.result.result import AnyResult, Result
 from uq.sampling.dependence import matrix_problem
 from uq.sampling.input_faults import InputFault
@@ -175,6 +176,26 @@ def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
     return inputs
 
 
+def changeable(laws: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Return the entries of a table [uncertain] that a what-if can change: ``rate.sigma``."""
+    return [
+        f"{name}.{key}"
+        for name, law in laws.items()
+        for key in law
+        if "equals" not in law and key not in ("source", "file", "times", "level")
+    ]
+
+
+def _remedy(place: str, laws: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return what to write in place of an entry that cannot be changed."""
+    entries = changeable(laws)
+    meant = [entry for entry in entries if entry == place or entry.endswith(f".{place}")]
+    close = meant or get_close_matches(place, [*entries, *laws], n=1)
+    if close:
+        return "did you mean " + " or ".join(f"'uncertain.{entry}'" for entry in close) + "?"
+    return "only uncertain.NAME.KEY, uncertain.NAME and dependence.rank_correlation can"
+
+
 def _put(data: dict[str, Any], place: str, value: Any) -> None:
     table, _, rest = place.partition(".")
     if (table, rest) == ("dependence", "rank_correlation"):
@@ -185,15 +206,12 @@ def _put(data: dict[str, Any], place: str, value: Any) -> None:
         data[table][rest] = value
         return
     name, _, argument = rest.partition(".")
+    laws = data["uncertain"]
     if table != "uncertain" or not name:
-        raise InputError(
-            f"what if: '{place}' cannot be changed; only uncertain.NAME.KEY, uncertain.NAME and"
-            " dependence.rank_correlation can"
-        )
-    if name not in data["uncertain"]:
-        raise InputError(
-            f"what if: '{name}' is not uncertain in this study{nearest(name, data['uncertain'])}"
-        )
+        raise InputError(f"what if: '{place}' cannot be changed; {_remedy(place, laws)}")
+    if name not in laws:
+        problem = f"'{name}' is not uncertain in this study"
+        raise InputError(f"what if: {problem}; {_remedy(rest, laws)}")
     if argument == "equals":
         raise InputError(SAME)
     change(data, place, value, "what if")

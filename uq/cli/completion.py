@@ -4,8 +4,12 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
+
+if TYPE_CHECKING:
+    from uq.result.result import Result
 
 
 def complete_model(incomplete: str) -> list[str]:
@@ -51,20 +55,58 @@ def complete_study_or_result(incomplete: str) -> list[str]:
     return complete_study(incomplete) + complete_result(incomplete)
 
 
+def complete_format(incomplete: str) -> list[str]:
+    """Return the formats of figures."""
+    from uq.render.figures.figure import FORMATS
+
+    return _starting(incomplete, FORMATS)
+
+
+def complete_change(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the entries of the laws of the result that the line names before."""
+    from uq.assess.what_if import changeable
+    from uq.text.literals import read_toml
+
+    entries: Iterable[str] = ()
+    with suppress(Exception):
+        study = read_toml(_opened(context).dataset.attrs["study"])
+        entries = [f"uncertain.{entry}=" for entry in changeable(study["uncertain"])]
+    return _starting(incomplete, entries)
+
+
+def complete_key(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the keys of numbers of the result that the line names before."""
+    from uq.render.trace.trace import keys_of
+
+    keys: Iterable[str] = ()
+    with suppress(Exception):
+        keys = keys_of(_opened(context), incomplete)
+    return _starting(incomplete, keys)
+
+
 def complete_output(context: typer.Context, incomplete: str) -> list[str]:
     """Return the outputs of the result or the study that the line names before."""
-    file = next(iter(context.args), "")  # arguments are not parsed yet
+    file = _file_in(context)
     names: Iterable[str] = ()
     with suppress(Exception):  # a shell has no room for the fault of a file
         if file.endswith(".nc"):
-            from uq.result.result import Result
-
-            names = Result.open(file).outputs
+            names = _opened(context).outputs
         elif file:
             from uq.execution.loading import load_study
 
             names = load_study(file).model.outputs
     return _starting(incomplete, names)
+
+
+def _file_in(context: typer.Context) -> str:
+    """Return the first argument, which is parsed only where another argument is completed."""
+    return next(iter(context.args), "") or str(context.params.get("result") or "")
+
+
+def _opened(context: typer.Context) -> "Result":
+    from uq.result.result import Result
+
+    return Result.open(_file_in(context))
 
 
 def _starting(incomplete: str, words: Iterable[str]) -> list[str]:

@@ -7,17 +7,18 @@ from pathlib import Path
 
 from uq.assess.pairing import WORST
 from uq.assess.statistic import Reader, Statistic
+from uq.assess.statistics.counts import NEVER_ENDING
 from uq.assess.summary import summarise
 from uq.assess.what_if import read_changes, reweighted_summary, what_if_facts
 from uq.cli.printing import console, grid, heading, note, paragraph, print_json, title
 from uq.result.result import Result
 from uq.stats import two_samples
 from uq.stats.estimate import Estimate, rounded_text
-from uq.text.numbers import compared, estimated, in_brackets
+from uq.text.numbers import compared, estimated, in_brackets, number, percent, percent_range
 from uq.text.units import readable, typical, unit_of
 
 _HEADER = ("", "as studied", "changed", "difference")
-_PERCENT = 0.01
+_PROBABILITIES = ("thresholds", NEVER_ENDING)
 
 
 def what_if(path: Path, texts: Sequence[str], json: bool) -> None:
@@ -34,7 +35,7 @@ def what_if(path: Path, texts: Sequence[str], json: bool) -> None:
         heading(f"\n{name}")
         of_study = studied.shares.get(name, {})
         pairs = [(of_study[label], share) for label, share in shares.items() if label in of_study]
-        lines = (_lines(*pair, pair[0].label, _PERCENT, " %") for pair in pairs)
+        lines = (_lines(*pair, pair[0].label) for pair in pairs)
         grid(chain.from_iterable(lines), _HEADER)
     for name, output in changed.summary.outputs.items():
         declared = result.outputs[name.partition("[")[0]]
@@ -47,8 +48,8 @@ def what_if(path: Path, texts: Sequence[str], json: bool) -> None:
             asked = () if before.at is None else (before.at,)
             label = estimated(before.label, output.units, variable, asked)
             per = unit.size if before.unit == output.units else 1.0
-            sign = " %" if before.key[0] == "thresholds" else ""
-            table += _lines(before, after, label, _PERCENT if sign else per, sign)
+            is_share = before.key[0] in _PROBABILITIES
+            table += _lines(before, after, label, None if is_share else per)
         grid(table, _HEADER)
         for text in dict.fromkeys(text for part in output.statistics for text in part.notes):
             paragraph(text, indent=2)
@@ -58,7 +59,8 @@ def what_if(path: Path, texts: Sequence[str], json: bool) -> None:
         f"The same rows, weighted: worth {changed.effective_rows:.0f} independent ones"
         + (f"; Pareto k = {changed.pareto_k:.2f}." if isfinite(changed.pareto_k) else ".")
         + " Below each value is its 95 % interval, conservative for a difference: it allows for any"
-        " correlation of the two estimates. *: the interval excludes zero."
+        " correlation of the two estimates. *: the interval excludes zero. Differences of"
+        " probabilities are in percentage points."
     )
 
 
@@ -77,23 +79,30 @@ Line = tuple[str, ...]
 
 
 def _lines(
-    before: Statistic, after: Statistic, label: str, per: float, sign: str = ""
+    before: Statistic, after: Statistic, label: str, per: float | None = None
 ) -> Iterator[Line]:
-    """Yield a line of values in a unit of size `per`, and one of their intervals."""
+    """Yield a line of values in a unit of size `per`, of shares if None, and one of intervals."""
     first, second = before.estimate, after.estimate
     apart = Estimate()
     if isfinite(first.value) and isfinite(second.value):
         apart = two_samples.difference(first.finite, second.finite, WORST)
     excludes = apart.low > 0 or apart.high < 0
-    cells = [*(rounded_text(estimate, per) for estimate in (first, second)), _digits(apart, per)]
-    values, ends = zip(*cells, strict=True)
-    shown = [value if value == "-" else value + sign for value in values]
-    yield label, *shown[:2], f"{shown[2]} *" if excludes else shown[2]
-    if any(ends):
-        yield "", *(end and end + sign for end in ends)
+    cells = [_share(both) if per is None else rounded_text(both, per) for both in (first, second)]
+    value, ends = _difference(apart, 0.01 if per is None else per)
+    points = " points" * (per is None and isfinite(apart.value))
+    yield label, cells[0][0], cells[1][0], f"{value}{points}{' *' * excludes}"
+    if cells[0][1] or cells[1][1] or ends:
+        yield "", cells[0][1], cells[1][1], ends
 
 
-def _digits(apart: Estimate, per: float) -> tuple[str, str]:
+def _share(estimate: Estimate) -> tuple[str, str]:
+    """Return a share in per cent and its interval."""
+    value, low, high = estimate.numbers
+    ends = percent_range(low, high) if estimate.has_interval else ""
+    return percent(value) if isfinite(value) else "-", ends
+
+
+def _difference(apart: Estimate, per: float) -> tuple[str, str]:
     """Return a difference and its interval, to three digits: an end near zero shows its sign."""
-    value, low, high = (f"{number / per:.3g}" for number in apart.numbers)
+    value, low, high = (number(float(f"{size / per:.3g}")) for size in apart.numbers)
     return value if isfinite(apart.value) else "-", f"{low} to {high}" * apart.has_interval

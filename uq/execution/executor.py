@@ -160,7 +160,7 @@ class Dispatcher:
             # Only as many chunks are sent as keep the workers busy.
             while self._untaken and len(crew) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
                 crew.send(*self._take(self._shared(sharing)))
-            before, self._under_way = self._under_way, crew.begun(threads)
+            before, self._under_way = self._under_way, self._at_once(crew.begun(threads))
             if self._under_way and not before:
                 self.report_progress()  # the first row may take minutes
             for start, rows, chunk, seconds in crew.returned():
@@ -174,7 +174,7 @@ class Dispatcher:
         if not self._untaken:
             return 0.0
         start, rows = self._take(size)
-        self._under_way = len(rows.x)
+        self._under_way = self._at_once([len(rows.x)])
         if not self.row_seconds or self.row_seconds * len(rows.x) > _LONG_SECONDS:
             self.report_progress()
         began = time.perf_counter()
@@ -184,6 +184,11 @@ class Dispatcher:
         self.row_seconds = seconds / len(rows.x)
         self._keep(start, rows, chunk)
         return seconds
+
+    def _at_once(self, chunks: list[int]) -> int:
+        """Return the rows computed at this moment in chunks of these sizes."""
+        alone = isinstance(self.workload.model.batch, RowByRow)  # one after the other
+        return len(chunks) if alone else sum(chunks)
 
     def _take(self, size: int) -> tuple[int, Rows]:
         start, end = self._todo.popleft()

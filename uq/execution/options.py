@@ -28,7 +28,7 @@ class Progress(NamedTuple):
     compiling : bool
         Whether the model is being compiled, and rows wait for it.
     under_way : int
-        Rows that workers have started.
+        Rows that are being computed: of a model that computes row by row, one for each worker.
     """
 
     done: int

@@ -105,9 +105,9 @@ class Workers:
     def _is_connected(self) -> bool:
         return bool(self._client.status == "running")
 
-    def begun(self, threads: int) -> int:
-        """Return the number of rows that `threads` threads have started; the others are queued."""
-        return sum(len(rows.x) for _, rows, _ in islice(self._under_way.values(), threads))
+    def begun(self, threads: int) -> list[int]:
+        """Return the sizes of the chunks that `threads` threads have started; others are queued."""
+        return [len(rows.x) for _, rows, _ in islice(self._under_way.values(), threads)]
 
     def send(self, start: int, rows: Rows, tries: int = 1) -> None:
         """Submit rows for computation."""

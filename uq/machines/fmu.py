@@ -30,6 +30,7 @@ from uq.machines.machine_file import content_of, read_as, refuse
 from uq.machines.returned import Censored, Returned, RowError, censored, checked
 from uq.machines.row_by_row import RowByRow, model_from
 from uq.machines.row_resources import Folders
+from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import InputFault, unknown
 
 _LOG, _UNPACKED = "log.txt", "fmu"
@@ -69,7 +70,7 @@ def fmu_of(path: Path) -> Model:
     batch = RowByRow(runner, tuple(fields), returned, False, folders.leave, folders.keep, False)
     title = machine.title or description.description or description.modelName
     about = machine.name, title, machine.version
-    return model_from(*about, fields, returned, batch, False, file.defaults)
+    return model_from(*about, fields, returned, batch, False, StudyDefaults.of_file(file))
 
 
 def code_of_fmu(path: Path) -> str:

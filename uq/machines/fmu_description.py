@@ -20,7 +20,6 @@ from uq.contract import ROW_NAME
 from uq.errors import InputError, described
 from uq.files.whole_files import file_there
 from uq.machines.machine_file import Headline, MachineName, Name, RowName, TomlTable, Uncertain
-from uq.machines.study_defaults import StudyDefaults
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -86,11 +85,6 @@ class FmuFile(TomlTable):
     parameters: dict[Name, FmuParameterTable] = {}
     outputs: dict[Name, FmuOutputTable] = {}
     uncertain: Uncertain = {}
-
-    @property
-    def defaults(self) -> StudyDefaults:
-        """What it proposes to a new study."""
-        return StudyDefaults(self.machine.row_name, self.machine.headline, self.uncertain)
 
 
 _VERSION = "2.0"

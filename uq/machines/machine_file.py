@@ -16,7 +16,6 @@ from uq.contract import ROW_NAME
 from uq.errors import InputError, nearest, one_line
 from uq.files.whole_files import file_there, node
 from uq.machines.row_by_row import SEED
-from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
 
@@ -185,11 +184,6 @@ class MachineFile(TomlTable):
     parameters: Annotated[dict[Name, ParameterTable], Field(min_length=1)]
     outputs: Annotated[dict[Name, OutputTable], Field(min_length=1)]
     uncertain: Uncertain = {}
-
-    @property
-    def defaults(self) -> StudyDefaults:
-        """What it proposes to a new study."""
-        return StudyDefaults(self.machine.row_name, self.machine.headline, self.uncertain)
 
 
 def read_machine(path: Path) -> MachineFile:

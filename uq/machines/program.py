@@ -29,6 +29,7 @@ from uq.machines.program_outputs import STDERR_FILE, STDOUT_FILE, value_in
 from uq.machines.returned import Returned, RowError, checked, from_plain
 from uq.machines.row_by_row import SEED, RowByRow, model_from
 from uq.machines.row_resources import Folders, bound_files, end_descendants, ended_within, size_of
+from uq.machines.study_defaults import StudyDefaults
 
 _LAST = 300  # characters of the last line of a failed program
 _LOOK_SECONDS = 1.0  # between looks at the size of a folder
@@ -78,7 +79,7 @@ def program_of(path: Path) -> Model:
     batch = RowByRow(runner, tuple(inputs), returned, True, folders.leave, folders.keep)
     title = machine.title or machine.name
     about = machine.name, title, machine.version
-    return model_from(*about, inputs, returned, batch, random, read.defaults)
+    return model_from(*about, inputs, returned, batch, random, StudyDefaults.of_file(read))
 
 
 def code_of_program(path: Path) -> str:

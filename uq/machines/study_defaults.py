@@ -5,8 +5,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from uq.contract import ROW_NAME, Parameter
-from uq.errors import nearest
-from uq.sampling.input_faults import fault_of, unknown
+from uq.sampling.input_faults import InputFault, unknown
 
 _WORDS = re.compile(r"[^\W\d_]([\w -]{0,20}\w)?")
 
@@ -27,6 +26,11 @@ class StudyDefaults(NamedTuple):
     row_name: Sequence[str] = ROW_NAME
     headline: Sequence[str] = ()
     uncertain: Mapping[str, Mapping[str, Any]] = {}
+
+    @classmethod
+    def of_file(cls, file: Any) -> "StudyDefaults":
+        """Return what a machine file proposes, of a program or of an FMU."""
+        return cls(file.machine.row_name, file.machine.headline, file.uncertain)
 
     def faults(
         self, parameters: Mapping[str, Parameter], outputs: Collection[str]
@@ -49,32 +53,25 @@ class StudyDefaults(NamedTuple):
         for name, law in self.uncertain.items():
             if name not in parameters:
                 yield f"uncertain: '{name}': {unknown('parameter', name, parameters)}"
-            elif problem := _law_fault(law, parameters[name]):
-                yield f"uncertain: {name}: {problem}"
+            elif fault := _law_fault(name, law, parameters[name]):
+                yield fault.line
 
 
 def _are_texts(names: object) -> bool:
     return isinstance(names, list | tuple) and all(isinstance(name, str) for name in names)
 
 
-def _law_fault(entry: Any, parameter: Parameter) -> str:
-    """Return the fault of a law in words; "" if the parameter can have it."""
+def _law_fault(name: str, entry: Any, parameter: Parameter) -> InputFault | None:
+    """Return the fault of a law, as in a study file; None if the parameter can have it."""
     from pydantic import ValidationError
 
-    from uq.sampling.laws import LAWS, law_of
+    from uq.sampling.laws import LAWS, law_fault, law_of
     from uq.sampling.truncation import law_problem
 
-    kind = entry.get("distribution") if isinstance(entry, Mapping) else None
-    if not isinstance(kind, str) or kind not in LAWS:
-        near = nearest(kind, LAWS) if isinstance(kind, str) else ""
-        return f"needs a distribution{near} (one of {', '.join(LAWS)})"
     try:
-        fault = law_problem(law_of(dict(entry)), parameter)
+        fault = law_problem(law_of(entry), parameter)
     except ValidationError as invalid:
         error: dict[str, Any] = dict(invalid.errors(include_url=False)[0])
-        place = tuple(error["loc"])[1:]  # pydantic begins with the name of the law
-        keys = list(LAWS[kind].model_fields)
-        fault = fault_of({**error, "loc": place}, lambda path: ("argument", keys))
-    if fault is None:
-        return ""
-    return f"{'.'.join(map(str, fault.path))} {fault.problem}".strip()
+        kind, *place = error["loc"] or ("",)
+        return law_fault({**error, "loc": ("uncertain", name, *place)}, LAWS.get(str(kind)))
+    return fault and fault.within("uncertain", name)

@@ -102,8 +102,9 @@ class Result:
 
     @cached_property
     def study(self) -> StudyFile:
-        """The study file."""
-        return study_of_result(self.dataset.attrs["study"])
+        """The study file, its quantities in the units of the outputs."""
+        units = {name: output.unit for name, output in self.outputs.items()}
+        return study_of_result(self.dataset.attrs["study"]).in_units(units)
 
     @property
     def analysis(self) -> AnalysisTable:

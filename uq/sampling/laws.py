@@ -8,9 +8,11 @@ from functools import lru_cache, reduce
 from operator import or_
 from typing import Annotated, Any, get_args
 
-from pydantic import Field, TypeAdapter
+from pydantic import BaseModel, Field, TypeAdapter
 
+from uq.errors import nearest
 from uq.sampling import listed_values, scipy_laws
+from uq.sampling.input_faults import MISSING, InputFault, fault_of, unknown
 from uq.sampling.law import Law
 
 LAWS: dict[str, type[Law]] = {
@@ -54,6 +56,31 @@ def law_of(entry: Any) -> Law:
     pydantic.ValidationError
     """
     return any_law().validate_python(entry)
+
+
+def law_fault(error: dict[str, Any], law: type[BaseModel] | None) -> InputFault:
+    """Return a pydantic error in an entry of the table [uncertain] as a fault.
+
+    Parameters
+    ----------
+    error : dict
+        An item of ``ValidationError.errors()``; ``loc`` is the path in a study file.
+    law : type, optional
+        What the entry is; None if it names no law.
+    """
+    path = tuple(error["loc"])
+    if error["type"] == "union_tag_not_found":
+        for key, given in error["input"].items():
+            if meant := nearest(key, ["distribution"]):
+                return InputFault((*path, key), f"no such key{meant}", given)
+        return InputFault((*path, "distribution"), f"{MISSING} (one of {', '.join(LAWS)})")
+    if error["type"] == "union_tag_invalid":
+        name = error["ctx"]["tag"]
+        return InputFault((*path, "distribution"), unknown("law", name, LAWS), name)
+    fields = list(law.model_fields) if law else []
+    common = list(Law.model_fields)[1:] if law and issubclass(law, Law) else []
+    names = [name for name in fields if name not in common] + common  # source is the first
+    return fault_of(error, lambda at: (f"argument of {at[1]}'s law", names))
 
 
 def any_law() -> TypeAdapter[Law]:

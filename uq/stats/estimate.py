@@ -98,7 +98,7 @@ def failed_bounds_text(bounds: Estimate | None, per: float = 1.0) -> str:
 
 
 def rounded_text(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
-    """Return an estimate, rounded to the accuracy that its interval supports, and the interval.
+    """Return an estimate and its interval to three digits, more if the interval is narrower.
 
     Parameters
     ----------
@@ -109,20 +109,24 @@ def rounded_text(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
     Returns
     -------
     tuple of str
-        Value and interval as text; the interval is "" if it is missing.
+        Value and interval as text; the interval is "" if it is missing. The largest of the three
+        numbers has three digits, and the others as many decimals.
     """
-    value, low, high = estimate.numbers
-    if not (isfinite(value) and estimate.has_interval and high > low):
-        text = f"{value / per:.3g}" if isfinite(value) else value_text(estimate, per=per)
-        return text, interval_text(estimate, per)
-    decimals = -floor(log10((high - low) / per / 3))
-    text, *ends = (_rounded(unrounded / per, decimals) for unrounded in estimate.numbers)
-    return text, " to ".join(ends)
+    scaled = estimate.over(per)
+    largest = max((abs(number) for number in scaled.numbers if isfinite(number)), default=0.0)
+    decimals = 2 - floor(log10(largest)) if largest else 0
+    if scaled.has_interval and scaled.high > scaled.low:
+        decimals = max(decimals, -floor(log10((scaled.high - scaled.low) / 3)))
+    value, low, high = (
+        _rounded(number, decimals) if isfinite(number) else value_text(scaled, name)
+        for name, number in zip(("value", "low", "high"), scaled.numbers, strict=True)
+    )
+    return value, f"{low} to {high}" * bool(interval_text(scaled))
 
 
 def _rounded(value: float, decimals: int) -> str:
     rounded = round(value, decimals) + 0.0  # no minus sign before zero
-    return f"{rounded:.{decimals}f}" if 0 <= decimals <= 6 else number(rounded)
+    return f"{rounded:.{decimals}f}" if value and 0 <= decimals <= 6 else number(rounded)
 
 
 def share_text(estimate: Estimate) -> str:

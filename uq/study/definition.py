@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -202,6 +203,9 @@ class Study:
 
 def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
     """Return the validated study in a file, without running models that declare no outputs."""
+    machine = re.fullmatch(r"(.+\.(?:py|fmu))(?::\w+)?", str(path))
+    if machine and Path(machine[1]).is_file():
+        raise _is_machine(str(path))
     return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
 
 
@@ -230,9 +234,7 @@ def study_from_text(
     """
     data = parse(text, source)
     if "machine" in data and "study" not in data:
-        raise InputError(
-            f"{source}: is a machine file; run a study of it: uq run STUDY --model {source}"
-        )
+        raise _is_machine(source)
     faults = shape_faults(data)
     tables = sound_entries(data, faults)
     lines: list[str] = []
@@ -264,6 +266,7 @@ def study_from_text(
     file = StudyFile.model_validate(data)
     settings, _ = read_settings(study_model, file.settings)
     study_model = study_model.given(settings)
+    file = file.in_units({name: output.unit for name, output in study_model.outputs.items()})
     outputs = file.analysis.outputs or tuple(study_model.outputs)
     uncertain = {name: law for name, law in entries.items() if not isinstance(law, Tied)}
     table = columns[file.design.file] if file.design.file and file.design.method in IMPORTED else {}
@@ -284,6 +287,14 @@ def study_from_text(
         tied={name: tied for name, tied in entries.items() if isinstance(tied, Tied)},
         dependence=file.dependence,
         imported=imported,
+    )
+
+
+def _is_machine(source: str) -> InputError:
+    named = shlex.quote(source)
+    return InputError(
+        f"{source}: is a machine, not a study; 'uq init {named} > study.toml' writes a study of it,"
+        f" and 'uq run study.toml --model {named}' runs it"
     )
 
 

@@ -32,7 +32,7 @@ from uq.sampling.law import LEVEL_SCHEMA, LIST, STRICT, Law, Level
 from uq.sampling.laws import any_law, law_of
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE
 from uq.text.literals import shown
-from uq.text.quantities import EXAMPLE, SHAPE, Written, read_quantity
+from uq.text.quantities import EXAMPLE, SHAPE, Written, converted, read_quantity
 
 _MOST_LISTED = 200  # each is a row of every table
 
@@ -156,6 +156,13 @@ class Until(_Table):
         if {"input", "difference"} & given and self.index is None:
             raise ValueError('input and difference need index, such as index = "ST"')
         return self
+
+    def in_unit(self, units: str) -> Self:
+        """Return the rule with its quantities in the unit of its output."""
+        keys = [key for key in ("above", "below") if getattr(self, key) is not None]
+        if not keys and self.index is None:
+            keys = ["half_width"]
+        return self.model_copy(update={key: converted(getattr(self, key), units) for key in keys})
 
     @property
     def threshold(self) -> float | None:
@@ -369,3 +376,18 @@ class StudyFile(_Table):
     data: dict[str, dict[str, str]] = Field(
         {}, description="file -> column -> numbers: what files held, kept in results by 'uq run'"
     )
+
+    def in_units(self, units: Mapping[str, str]) -> Self:
+        """Return the file with its quantities in the units of the outputs, given by name."""
+        until, given = self.design.until, self.analysis.thresholds
+        thresholds = {
+            name: tuple(converted(value, units.get(name, "1")) for value in values)
+            for name, values in given.items()
+        }
+        update: dict[str, Any] = {
+            "analysis": self.analysis.model_copy(update={"thresholds": thresholds})
+        }
+        if until is not None:
+            until = until.in_unit(units.get(until.output.partition("[")[0], "1"))
+            update["design"] = self.design.model_copy(update={"until": until})
+        return self.model_copy(update=update)

@@ -18,7 +18,7 @@ from uq.stats.order_statistics import is_within, rows_for_bound, rows_to_reach
 from uq.stats.quantile_functions import student
 from uq.study.file import USUAL
 from uq.text.numbers import counted, listed
-from uq.text.quantities import read_quantity
+from uq.text.quantities import nearest_unit, read_quantity, unknown_factor
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -45,11 +45,24 @@ def hints(study: "Study") -> list[str]:
         Study of a model with declared outputs.
     """
     return [
+        *_unknown_units(study.model),
         *undeclared_lives(study.model, study.analysis.outputs),
         *_intervals(study),
         *_indices(study),
         *_ends_of_samples(study),
     ]
+
+
+def _unknown_units(model: Model) -> Iterator[str]:
+    """Yield a hint for each unit of a model that may be misspelt."""
+    units = {f"parameter '{name}'": model.parameter(name).unit for name in model.parameter_names}
+    units |= {f"output '{name}'": output.unit for name, output in model.outputs.items()}
+    for owner, unit in units.items():
+        if odd := unknown_factor(unit):
+            yield (
+                f"{owner} has unit '{unit}': '{odd}' is not a usual unit{nearest_unit(odd)}; as a"
+                " unit of your own it is shown as written, and no other unit converts to it"
+            )
 
 
 def undeclared_lives(model: Model, names: tuple[str, ...] = ()) -> Iterator[str]:

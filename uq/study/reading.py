@@ -1,16 +1,15 @@
 """Parser of a study file: syntax and schema of its tables, with one error line per fault."""
 
 from collections.abc import Sequence
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from uq.errors import InputError, first_fault_alone, nearest, one_line
+from uq.errors import InputError, first_fault_alone, one_line
 from uq.sampling.designs import IMPORTED
-from uq.sampling.input_faults import MISSING, InputFault, fault_of, unknown
-from uq.sampling.law import Law
-from uq.sampling.laws import LAWS
+from uq.sampling.input_faults import MISSING, InputFault, fault_of
+from uq.sampling.laws import LAWS, law_fault
 from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance, Until
 from uq.text.literals import key as written_key
 from uq.text.literals import read_toml
@@ -123,29 +122,18 @@ def _remove(entries: Any, path: tuple[str | int, ...]) -> None:
 
 
 def _fault(error: dict[str, Any]) -> InputFault:
-    path, law = list(error["loc"]), None
-    if path[0] == "uncertain" and len(path) > 2:
-        # Pydantic adds the kind of entry and the name of the law to the path.
+    path = list(error["loc"])
+    if path[0] != "uncertain" or len(path) < 2:
+        return fault_of(error, _allowed)
+    law: type[BaseModel] | None = None
+    if len(path) > 2:  # pydantic adds the kind of entry and the name of the law
         tied = path.pop(2) == "equals"
         law = Tied if tied else LAWS[path.pop(2)] if len(path) > 2 else None
-    match error["type"]:
-        case "union_tag_not_found":
-            for key, given in error["input"].items():
-                if meant := nearest(key, ["distribution"]):
-                    return InputFault((*path, key), f"no such key{meant}", given)
-            return InputFault((*path, "distribution"), f"{MISSING} (one of {', '.join(LAWS)})")
-        case "union_tag_invalid":
-            name = error["ctx"]["tag"]
-            return InputFault((*path, "distribution"), unknown("law", name, LAWS), name)
-    return fault_of({**error, "loc": path}, partial(_allowed, law))
+    return law_fault({**error, "loc": path}, law)
 
 
-def _allowed(law: type[BaseModel] | None, path: Sequence[Any]) -> tuple[str, list[str]]:
+def _allowed(path: Sequence[Any]) -> tuple[str, list[str]]:
     """Return the kind and the names of the keys allowed in place of an unknown key."""
-    if law is not None:
-        common = list(Law.model_fields)[1:] if law is not Tied else []  # last, but the source
-        arguments = [name for name in law.model_fields if name not in common]
-        return f"argument of {path[1]}'s law", arguments + common
     if len(path) == 1:
         return "table", list(StudyFile.model_fields)
     if len(path) == 3:

@@ -1,6 +1,7 @@
 """Parser of quantities with units: ``24 hours``, ``12 degrees``, ``30 mm/s``."""
 
 import re
+from contextlib import suppress
 from fractions import Fraction
 from math import pi
 
@@ -11,6 +12,10 @@ _TIMES = {"min": "minutes", "h": "hours", "d": "days", "a": "years"}
 _SECONDS = {"min": 60, "h": 3600, "d": 86400, "a": 31557600}
 _PREFIXES = {"p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
 _BASES = {*PREFIXED, "Ω"}
+_UNPREFIXED = (
+    "g t K degC mol cd T H S C Wb lm lx l L bar atm eV Ah Wh VA dB ppm rpm Bq Gy Sv"
+    " cycle cycles revolutions turns strokes starts impacts counts"
+).split()  # known, too, but shown without a prefix
 _OTHER_NAMES = {"second": "s", "seconds": "s", "Ω": "ohm", "ohms": "ohm"}
 _DECODED = {word: name for name, word in _TIMES.items()} | {
     "seconds": "s",
@@ -21,7 +26,8 @@ _DECODED = {word: name for name, word in _TIMES.items()} | {
 _DEGREES = ("°", "deg", "degree", "degrees")
 
 _NUMBER = r"[-+]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][-+]?[0-9]{1,3})?"
-_UNIT = r"[A-Za-zµμΩ°%].{0,40}"
+_LONGEST = 41  # characters of a unit
+_UNIT = rf"[A-Za-zµμΩ°%].{{0,{_LONGEST - 1}}}"
 _QUANTITY = re.compile(rf"\s*((?>{_NUMBER}))\s*({_UNIT})")
 
 EXAMPLE = '"24 hours", "250 um"'
@@ -37,7 +43,7 @@ Dimensions = dict[str, int]
 
 
 class Written(float):
-    """A number in its CF unit that was written in another unit.
+    """A number in a CF unit that was written with its unit.
 
     It behaves as a plain number.
 
@@ -55,8 +61,8 @@ class Written(float):
     dimensions: Dimensions
 
 
-def read_quantity(text: str) -> Written:
-    """Return a quantity converted to the CF unit.
+def read_quantity(text: str, units: str = "1") -> Written:
+    """Return a quantity converted to a CF unit.
 
     Parameters
     ----------
@@ -64,6 +70,8 @@ def read_quantity(text: str) -> Written:
         Number and unit. Times may be in minutes, hours, days or years of 365.25 days, angles in
         degrees, pure numbers in per cent; other units may have a prefix, and quotients of units a
         slash.
+    units : str
+        A unit of the same dimensions (see `misfit`); by default the one without prefix.
 
     Returns
     -------
@@ -79,17 +87,21 @@ def read_quantity(text: str) -> Written:
     --------
     >>> read_quantity("24 h"), read_quantity("250 um"), read_quantity("12 degrees").unit.name
     (86400.0, 0.00025, '°')
+    >>> read_quantity("90 days", "h")
+    2160.0
     """
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise ValueError(f"must be a number, or have its unit: {EXAMPLE}")
     size, turns, dimensions, name = _taken_apart(match[2].strip())
+    per, other_turns, *_ = _taken_apart(units)
+    size, turns = size / per, turns - other_turns
     try:
         value = Written(float(Fraction(match[1]) * size) * pi**turns / 180.0**turns)
+        value.unit = ReadableUnit(name, float(size) * (pi / 180) ** turns)
     except OverflowError:
         raise ValueError("is too large a number") from None
     value.number = match[1]
-    value.unit = ReadableUnit(name, float(size) * (pi / 180) ** turns)
     value.dimensions = dimensions
     return value
 
@@ -107,10 +119,11 @@ def misfit(text: str, name: str, units: str) -> str:
         CF unit of this parameter, output or key.
     """
     written = read_quantity(text)
-    size, turns, dimensions, _ = _taken_apart(units)
-    if (size, turns) != (1, 0):
-        return f"'{name}' is in '{units}': give the number in that unit, without a unit"
-    if written.dimensions == dimensions:
+    if written.dimensions == _taken_apart(units)[2]:
+        try:
+            read_quantity(text, units)
+        except ValueError as error:
+            return str(error)
         return ""
     given = text.strip().removeprefix(written.number).strip()
     allowed = allowed_units(units)
@@ -130,16 +143,44 @@ def fault_of_unit(unit: str) -> str:
     return "write its factors with their powers, such as 'N m-1', or '1' for a pure number"
 
 
+def unknown_factor(unit: str) -> str:
+    """Return the first factor of a unit that is none of the usual units; "" if all are."""
+    if fault_of_unit(unit):
+        return unit
+    for _, symbol, _ in [] if unit == "1" else _PART.findall(unit):
+        if _of_symbol(symbol)[0] in {*_BASES, "1"} or symbol in _UNPREFIXED:
+            continue
+        if symbol[0] not in _PREFIXES or symbol[1:] not in _UNPREFIXED:
+            return str(symbol)
+    return ""
+
+
+def nearest_unit(symbol: str) -> str:
+    """Return `nearest` of the usual units."""
+    return nearest(symbol, [*_TIMES, *_BASES, *_UNPREFIXED, "deg"])
+
+
+def converted(value: float, units: str) -> float:
+    """Return a quantity in the unit of its output; a number without a unit is in that unit."""
+    if isinstance(value, Written):
+        with suppress(ValueError):  # too large: a study with it is refused
+            return read_quantity(f"{value.number} {value.unit.name}", units)
+    return value
+
+
 def allowed_units(units: str) -> tuple[str, ...]:
     """Return the units in which a quantity with a CF unit may be written; prefixes as examples."""
-    if units == "s":
+    dimensions = _taken_apart(units)[2]
+    if dimensions == {"s": 1}:
         return ("s", *_TIMES.values(), "ms")
-    if units == "rad":
+    if dimensions == {"rad": 1}:
         return ("rad", "degrees")
-    if units == "1":
+    if not dimensions:
         return ("%",)
-    first = units.split(" ")[0]
-    return (units, *(f"{prefix}{units}" for prefix in ("m", "u", "k") if first in _BASES))
+    first, *others = units.split(" ")
+    base = _of_symbol(first)[0]
+    prefixed = (" ".join([f"{prefix}{base}", *others]) for prefix in ("", "m", "u", "k"))
+    return tuple(dict.fromkeys([units, *(prefixed if base in _BASES else ())]))
 
 
 def _taken_apart(text: str) -> tuple[Fraction, int, Dimensions, str]:
@@ -147,6 +188,8 @@ def _taken_apart(text: str) -> tuple[Fraction, int, Dimensions, str]:
     size, turns, dimensions, names = Fraction(1), 0, Dimensions(), list[str]()
     if text == "1":
         return size, turns, dimensions, text
+    if len(text) > _LONGEST:  # a unit of its own, which no quantity can have
+        return size, turns, {text: 1}, text
     place = 0
     while place < len(text):
         match = _PART.match(text, place)
@@ -210,7 +253,7 @@ def read_threshold(option: str, text: str, name: str, units: str) -> float:
     except ValueError:
         pass
     try:
-        quantity, problem = read_quantity(text), misfit(text, name, units)
+        quantity, problem = read_quantity(text, units), misfit(text, name, units)
     except ValueError as error:
         quantity, problem = Written(), str(error)
     if problem:

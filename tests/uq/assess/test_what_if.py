@@ -174,6 +174,15 @@ def test_where_no_row_can_be_is_refused(result):
         what_if(result, {"uncertain.x.sd": 1.0})
     with pytest.raises(InputError, match=r"\[uncertain.z\] sdd = 1.0: no such argument"):
         what_if(result, {"uncertain.z.sdd": 1.0})
+    for entry, meant in (
+        ("a.sigma", "'uncertain.a.sigma'"),
+        ("uncertain.sigma", "'uncertain.a.sigma'"),
+        ("uncertain.sd", "'uncertain.z.sd'"),
+        ("distribution", "'uncertain.a.distribution' or 'uncertain.z.distribution'"),
+        ("a.sigm", "'uncertain.a.sigma'"),
+    ):
+        with pytest.raises(InputError, match=f"did you mean {meant}"):
+            what_if(result, {entry: 1.0})
     with pytest.raises(InputError, match="'fixed.c' cannot be changed"):
         what_if(result, {"fixed.c": 1.0})
     with pytest.raises(InputError, match="times and level of 'a' cannot be changed"):
@@ -257,6 +266,26 @@ def test_on_the_command_line(result, tmp_path):
     run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8", "--json"])
     document = json.loads(run.output)
     assert document["effective_rows"] < 1000 and set(document["outputs"]) == {"life", "y"}
+
+
+def test_a_table_shows_the_share_that_never_ends_and_differences_in_points(tmp_path):
+    path = tmp_path / "rows.nc"
+    rows = computed(study(settings={"never_above": 1.0}))
+    rows.to_netcdf(path)
+    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8"])
+    never = re.search(
+        r"\n  never ends +(\S+) % +(\S+) % +(\S+) points", run.output.partition("\ny")[0]
+    )
+    before, after, apart = map(float, never.groups())
+    share = 100 * np.isposinf(rows["life"].values).mean()
+    assert before == pytest.approx(share, abs=0.05) and after < before
+    assert apart == pytest.approx(after - before, abs=0.11)
+    assert re.search(r"\n  P\(> 0.8 s\) +\S+ % +\S+ % +\S+ points", run.output)
+    assert "Differences of probabilities are in percentage points." in " ".join(run.output.split())
+    document = what_if_facts(reweighted_summary(Result(rows), {"uncertain.z.sd": 0.8})).json
+    assert 100 * document["outputs"]["life"]["never_ending"]["value"] == pytest.approx(
+        after, abs=0.05
+    )
 
 
 @pytest.mark.slow

@@ -43,6 +43,19 @@ def a_study_and_its_result(folder, write_study):
         ("uq sensitivity results/wear.nc --output l", ["life"]),
         ("uq sensitivity missing.nc --output l", []),
         ("uq plot results/wear.nc --only hist", ["histogram"]),
+        ("uq plot results/wear.nc --format s", ["svg"]),
+        ("uq what-if results/wear.nc --set uncertain.rate.s", ["uncertain.rate.sigma="]),
+        ("uq what-if missing.nc --set unc", []),
+        (
+            "uq trace results/wear.nc outputs/life/mean_",
+            [
+                "outputs/life/mean_interval",
+                "outputs/life/mean_interval/low",
+                "outputs/life/mean_interval/high",
+            ],
+        ),
+        ("uq trace results/wear.nc inputs/rate/stated/0.9", ["inputs/rate/stated/0.95"]),
+        ("uq trace missing.nc outputs/l", []),
     ],
 )
 def test_a_shell_completes(uq, folder, a_study_and_its_result, monkeypatch, typed, completed):

@@ -10,6 +10,7 @@ import xarray as xr
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from in_memory import compute
+from own_machines import WEAR
 from wordings import sentence
 
 import uq
@@ -72,6 +73,11 @@ def test_the_inputs_of_all_chunks_sent_take_bounded_memory(write_study):
     assert 1e9 < 2 * threads * size * row_bytes < 2e9
 
 
+DECLARED = (
+    "@uq.machine(returns={'life': uq.Returned('s', life=True), 'profile': uq.Returned(shape=(2,))})"
+)
+
+
 class OneGivenUp(list):
     """Chunks on workers that compute at once, at 3 s each; the cost of the last one is unknown."""
 
@@ -86,7 +92,7 @@ class OneGivenUp(list):
         self.append((start, some, evaluate(model, given, some.x, some.seed, start), seconds))
 
     def begun(self, threads):
-        return sum(len(rows.x) for _, rows, *_ in self[:threads])
+        return [len(rows.x) for _, rows, *_ in self[:threads]]
 
     def returned(self):
         back = self[:]
@@ -126,6 +132,17 @@ def test_progress_says_how_many_rows_are_under_way_before_the_first_returns(writ
     dispatcher.finish_on(OneGivenUp(workload, threads=2))
     assert (seen[0].done, seen[0].under_way) == (0, 20)
     assert (seen[-1].done, seen[-1].under_way) == (40, 0)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_each_worker_of_a_function_has_one_row_under_way(write_function, threads):
+    file = write_function(WEAR.replace("@uq.machine", DECLARED))
+    workload = workload_of(load_study("own.toml", file))
+    seen = []
+    options = RunOptions(chunk_rows=10, progress=seen.append)
+    dispatcher = executor.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher.finish_on(OneGivenUp(workload, threads))
+    assert (seen[0].done, seen[0].under_way) == (0, threads)
 
 
 @settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -61,10 +61,8 @@ def test_times_are_in_the_unit_of_the_life(uq, folder, worn):
     document = strict_json(uq(*ask, "--at", "20", "--json").out)
     assert document["time_units"] == "h"
     assert [row["time"] for row in document["narrowing"]] == [20.0] * 3
-    wrong = uq(*ask, "--at", "1 day")
-    assert wrong.err == (
-        "--at 1 day: 'a life' is in 'h': give the number in that unit, without a unit\n"
-    )
+    assert uq(*ask, "--at", "1200 minutes", "--json").out == uq(*ask, "--at", "20", "--json").out
+    assert "the unit 'kg' does not fit 'a life'" in uq(*ask, "--at", "1 kg").err
 
 
 def test_it_is_worth_as_much_of_a_posterior(worn):

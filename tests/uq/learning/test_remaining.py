@@ -80,10 +80,15 @@ def test_times_are_in_the_unit_of_the_life(uq, folder, worn):
     shown = uq("update", "pads.nc", "found.csv", "-o", "after.nc", "--by", "150").out
     assert "A: life[side=left,depth=100.0] survived at 60 h" in shown
     assert "life[side=left,depth=100.0]  remaining life [h] of units that run" in shown
-    wrong = uq("update", "pads.nc", "found.csv", "-o", "other.nc", "--by", "2 days")
-    assert wrong.code == 2
-    assert wrong.err == (
-        "--by 2 days: 'a life' is in 'h': give the number in that unit, without a unit\n"
+    both = [
+        uq("update", "pads.nc", "found.csv", "-o", f"{i}.nc", "--by", by, "--json").out
+        for i, by in enumerate(("6.25 days", "150"))
+    ]
+    assert both[0] == both[1] and '"150.0"' in both[0]
+    wrong = uq("update", "pads.nc", "found.csv", "-o", "other.nc", "--by", "2 kg")
+    assert wrong.code == 2 and wrong.err == (
+        "--by 2 kg: the unit 'kg' does not fit 'a life'"
+        " (allowed: s, minutes, hours, days, years, ms)\n"
     )
     assert not (folder / "other.nc").exists()
 

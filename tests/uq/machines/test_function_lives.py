@@ -33,14 +33,37 @@ def test_what_is_declared_is_not_looked_for(uq, write_function):
     assert "returned 'profile' with shape (2,), expected ()" in sentence
 
 
-@pytest.mark.parametrize(("unit", "fits"), [("m", True), ("mm", False), ("MPa", False)])
-def test_a_threshold_has_the_unit_of_its_output_or_of_its_base(uq, write_function, unit, fits):
+@pytest.mark.parametrize(
+    ("unit", "says"), [("m", ""), ("mm", ""), ("MPa", "'um' does not fit 'y' (allowed: MPa, Pa,")]
+)
+def test_a_threshold_has_a_unit_that_fits_its_output(uq, write_function, unit, says):
     text = f"import uq\n@uq.machine(returns={{'y': '{unit}'}})\ndef wear(load=1.0): ...\n"
     study = WEAR_STUDY + "[analysis]\nthresholds = {y = '250 um'}\n"
     ended = uq("check", "own.toml", "--model", write_function(text, study))
-    assert (ended.code == 0) is fits
-    if not fits:
-        assert f"'y' is in '{unit}': give the number in that unit, without a unit" in ended.err
+    assert (ended.code == 0) is not says and says in ended.err
+
+
+def test_a_life_in_hours_is_asked_for_in_hours_or_days(uq, write_function):
+    text = (
+        "import uq\n@uq.machine(returns={'life': uq.Returned('h', life=True)})\n"
+        "def wear(load=1.0):\n    return {'life': 3000 / load}\n"
+    )
+    tables = (
+        "[analysis]\nthresholds = {life = ['2000 hours', '100 days']}\n"
+        "[design.until]\noutput = 'life'\nb_life = 'B50'\nhalf_width = '6 days'\n"
+    )
+    model = write_function(text, WEAR_STUDY + tables)
+    ended = uq("run", "own.toml", "--model", model, "-o", "own.nc")
+    assert ended.code == 0, ended.err
+    ds = package.open_result("own.nc")
+    asked = package.summary(ds)
+    shares = [float((ds["life"] < t).mean()) for t in (2000.0, 2400.0)]
+    assert [asked.loc["life", f"P(<{t})"] for t in (2000.0, 2400.0)] == pytest.approx(shares)
+    full = uq("summary", "own.nc", "--full").out
+    assert "P(> 2000 hours)" in full and "P(< 100 days)" in full
+    assert "P(life < 100 days)" in uq("sensitivity", "own.nc", "--output", "P(life < 2400 h)").out
+    wrong = uq("sensitivity", "own.nc", "--output", "P(life < 50 days)")
+    assert "no such event 'P(life<1200.0)'" in wrong.err
 
 
 def test_a_threshold_with_a_unit_waits_for_the_outputs(uq, write_function):

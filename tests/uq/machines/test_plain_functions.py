@@ -264,9 +264,14 @@ def test_a_new_study_has_the_laws_and_outputs_that_the_machine_proposes(uq, fold
         ('("life",)', '("live",)', "headline: 'live': no such output; did you mean 'life'?"),
         ('("life",)', '"life"', "headline = 'life': must be a list of outputs"),
         ('"load": {', '"lead": {', "uncertain: 'lead': no such parameter; did you mean 'load'?"),
-        ('"normal"', '"norml"', "uncertain: load: needs a distribution; did you mean 'normal'?"),
-        ('"sd": 0.1', '"sd": -0.1', "uncertain: load: sd must be greater than 0"),
-        ('"sd": 0.1', '"sigma": 0.1', "uncertain: load: sd is missing"),
+        ('"normal"', '"norml"', '[uncertain.load] distribution = "norml": no such law; did you'),
+        ('"distribution"', '"law"', "[uncertain.load] distribution: is missing (one of uniform,"),
+        ('"distribution"', '"distributon"', "no such key; did you mean 'distribution'?"),
+        ('"sd": 0.1', '"sd": -0.1', "[uncertain.load] sd = -0.1: must be greater than 0"),
+        ('"sd": 0.1', '"sigma": 0.1', "[uncertain.load] sd: is missing"),
+        ('"sd": 0.1', '"sd": 0.1, "x": 1', "no such argument of load's law (allowed: "),
+        ('"normal"', "5", "[uncertain.load] distribution = "),
+        ('"normal"', "[]", "[uncertain.load] distribution = "),
     ],
 )
 def test_a_proposal_that_cannot_be_used_is_refused(uq, write_function, old, new, sentence):

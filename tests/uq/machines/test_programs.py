@@ -196,7 +196,7 @@ def test_a_machine_file_in_the_place_of_a_study_is_one_line(uq, write_program):
     write_program()
     message = uq("run", "machine.toml").err
     assert message.count("\n") == 1
-    assert "is a machine file; run a study of it: uq run STUDY --model machine.toml" in message
+    assert "is a machine, not a study; 'uq init machine.toml > study.toml' writes" in message
 
 
 def test_a_program_that_is_killed_is_tried_again_and_named_as_any_other_failure(

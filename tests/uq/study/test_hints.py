@@ -9,6 +9,7 @@ from uq.execution.loading import load_study
 from uq.explore import rare_events
 from uq.study.hints import hints, undeclared_lives
 from uq.study.installed_models import find_model, model_names
+from uq.text.quantities import unknown_factor
 
 PAD = """
 import uq
@@ -59,6 +60,35 @@ def test_an_output_with_the_name_of_a_life_is_to_be_declared(studied, name, unit
 )
 def test_other_outputs_are_no_lives(studied, name, returned):
     assert studied(name, returned) == []
+
+
+@pytest.mark.parametrize(
+    ("unit", "odd", "meant"),
+    [
+        ("kN qqfoo", "qqfoo", ""),
+        ("hurz", "hurz", "; did you mean 'Hz'?"),
+        ("newtons m", "newtons", ""),
+        ("mbars", "mbars", "; did you mean 'bar'?"),
+    ],
+)
+def test_a_unit_that_may_be_misspelt_is_named(studied, unit, odd, meant):
+    (sentence,) = studied("y", repr(unit))
+    assert sentence.startswith(f"output 'y' has unit '{unit}': '{odd}' is not a usual unit{meant};")
+    assert "no other unit converts to it" in sentence
+
+
+@pytest.mark.parametrize(
+    "unit", "1 m mm kg mg N/m kPa m2 K degC mbar cycles rpm % rad kWh dB s-1 mol".split()
+)
+def test_usual_units_are_no_mistake(studied, unit):
+    assert studied("y", repr(unit)) == []
+
+
+def test_installed_models_have_usual_units():
+    for model in map(find_model, model_names()):
+        declared = [model.parameter(name).unit for name in model.parameter_names]
+        declared += [output.unit for output in model.outputs.values()]
+        assert not list(filter(None, map(unknown_factor, declared)))
 
 
 def test_no_installed_model_has_an_undeclared_life():

@@ -46,6 +46,18 @@ def test_the_file_with_a_model_is_found_by_its_text(folder, file, text, referenc
     assert file_with("pad", [Path()]) == reference
 
 
+@pytest.mark.parametrize("given", ["my pad.py", "my pad.py:pad"])
+def test_a_machine_in_place_of_its_study_says_what_to_do(uq, folder, given):
+    Path("my pad.py").write_text(PAD)
+    for verb in ("run", "check"):
+        ended = uq(verb, given)
+        assert (ended.code, ended.out) == (2, "")
+        assert ended.err == (
+            f"{given}: is a machine, not a study; 'uq init '{given}' > study.toml' writes a study"
+            f" of it, and 'uq run study.toml --model '{given}'' runs it\n"
+        )
+
+
 def test_no_file_is_run_or_waited_for(folder):
     os.mkfifo("a.py")
     Path("pad.py").write_text(f"open('run', 'w')\n{PAD}")

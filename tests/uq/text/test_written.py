@@ -62,6 +62,35 @@ def test_a_unit_that_does_not_fit_names_those_that_do():
     assert "(allowed: m s-1, mm s-1, um s-1, km s-1)" in misfit("12 mm", "rate", "m s-1")
 
 
+@pytest.mark.parametrize(
+    ("text", "units", "value"),
+    [
+        ("2000 hours", "h", 2000.0),
+        ("1 hour", "h", 1.0),
+        ("90 days", "h", 2160.0),
+        ("30 minutes", "h", 0.5),
+        ("1 year", "d", 365.25),
+        ("7200 seconds", "h", 2.0),
+        ("250 um", "mm", 0.25),
+        ("3 mm/s", "mm h-1", 10800.0),
+        ("12 degrees", "degrees", 12.0),
+        ("3 cycles", "cycles", 3.0),
+    ],
+)
+def test_a_quantity_is_converted_to_the_unit_of_its_output(text, units, value):
+    assert misfit(text, "y", units) == ""
+    assert read_quantity(text, units) == read_threshold("--by", text, "y", units) == value
+    assert threshold(read_quantity(text, units), units) == threshold(read_quantity(text), "")
+
+
+def test_a_unit_that_does_not_fit_a_unit_with_a_prefix_names_those_that_do():
+    allowed = "(allowed: s, minutes, hours, days, years, ms)"
+    assert misfit("3 kg", "life", "h") == f"the unit 'kg' does not fit 'life' {allowed}"
+    assert "(allowed: mm h-1, m h-1, um h-1, km h-1)" in misfit("3 kg", "rate", "mm h-1")
+    assert misfit("1e300 km", "y", "nm") == "is too large a number"
+    assert misfit("3 kg", "y", "d99 " * 100_000)
+
+
 def test_an_option_takes_plain_numbers_and_quantities():
     assert read_threshold("--by", "3600", "a life", "s") == 3600.0
     assert read_threshold("--by", "1 h", "a life", "s") == 3600.0

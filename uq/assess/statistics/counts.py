@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from uq.assess.population import as_sample
+from uq.assess.sample import SelectedRows, share
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind, placed
 from uq.contract import Mask
 from uq.result.element import Element
@@ -16,15 +17,37 @@ from uq.stats.importance_weights import effective_rows
 from uq.stats.intervals import Replicates
 from uq.text.numbers import counted, percent
 
+NEVER_ENDING = "never_ending"
+"""Key of the probability that a life never ends."""
+
+_NEVER = StatisticKind(readers=Reader.JSON | Reader.COLUMNS | Reader.COMPARED)
 _EFFECTIVE = StatisticKind(form="number", text="{:.0f}", readers=COUNT.readers)
 
 
 @placed(json=5, columns=3)
 def counts(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield the numbers of rows that never end, are censored, are undefined, or failed."""
+    """Yield the numbers of rows by what they lack, and the share that never ends, if any does."""
     for name in ("never", "censored", "undefined", "failed"):
         number = float(getattr(element, name).sum())
         yield Statistic((name,), name, Estimate(number), "rows", COUNT)
+    if element.is_lifetime and element.never.any():
+        sample = context.sample(element)
+        yield Statistic(
+            (NEVER_ENDING,),
+            "never succeeds" if element.declared.success else "never ends",
+            sample.never_ending(),
+            kind=_NEVER,
+            column=NEVER_ENDING,
+            estimator=share(_never),
+            by=sample.by[NEVER_ENDING],
+        )
+
+
+def _never(element: Element) -> SelectedRows | None:
+    """Return which rows never end; None where censored rows may not end."""
+    if element.censored.any() and not element.declared.never_known_at_once:
+        return None
+    return SelectedRows(~element.failed, element.never.astype(float))
 
 
 def never_ending(element: Element, replicate: Replicates) -> Estimate:

@@ -266,7 +266,12 @@ def what_if(
     result: given.ResultFile,
     set_: Annotated[
         list[str],
-        typer.Option("--set", metavar="uncertain.NAME.KEY=VALUE", help="May be repeated."),
+        typer.Option(
+            "--set",
+            metavar="uncertain.NAME.KEY=VALUE",
+            help="May be repeated.",
+            autocompletion=completion.complete_change,
+        ),
     ],
     json: given.Json = False,
 ) -> None:
@@ -288,7 +293,12 @@ def twin(
 def trace(
     result: given.ResultFile,
     key: Annotated[
-        str, typer.Argument(metavar="KEY", help="Its path in JSON: outputs/life/quantiles/0.05.")
+        str,
+        typer.Argument(
+            metavar="KEY",
+            help="Its path in JSON: outputs/life/quantiles/0.05.",
+            autocompletion=completion.complete_key,
+        ),
     ],
     model: given.ModelReference = None,
     json: given.Json = False,
@@ -327,7 +337,13 @@ def plot(
     ] = None,
     every: Annotated[bool, typer.Option("--all", help="Every figure, of every output.")] = False,
     formats: Annotated[
-        list[str] | None, typer.Option("--format", metavar="png|svg|pdf", help="Default: png.")
+        list[str] | None,
+        typer.Option(
+            "--format",
+            metavar="png|svg|pdf",
+            help="Default: png.",
+            autocompletion=completion.complete_format,
+        ),
     ] = None,
     width: Annotated[
         str | None,

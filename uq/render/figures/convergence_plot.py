@@ -74,7 +74,10 @@ def convergence(
     if bands and not np.isfinite(estimates[["low", "high"]].astype(float)).all(axis=None):
         bands += " where the rows allow one"
     whole_numbers(panel.yaxis)
-    title(panel, as_label(f"{statistic}: {chosen[0].meaning}", unit.name, 46), part, bands)
+    wide, narrow = (
+        as_label(f"{statistic}: {chosen[0].meaning}", unit.name, width) for width in (46, 26)
+    )
+    title(panel, wide, part, bands, quantity=narrow)
     return finish(panel)
 
 

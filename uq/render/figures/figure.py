@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from io import BytesIO
 from pathlib import Path
@@ -54,14 +54,13 @@ def width_in_metres(text: str) -> float:
     InputError
         When it is no length, or no width at which a figure can be read.
     """
-    try:
+    with suppress(ValueError):
         width = float(read_quantity(text))
-        unlike = misfit(text, "width", "m")
-    except ValueError as error:
-        raise InputError(f"--width '{text}': {error}") from None
-    if unlike or not _NARROWEST <= width <= _WIDEST:
-        raise InputError(f"--width '{text}': must be a length from 50 to 500 mm, such as 84mm")
-    return width
+        if not misfit(text, "width", "m") and _NARROWEST <= width <= _WIDEST:
+            return width
+    raise InputError(
+        f"--width '{text}': must be a length from 50 to 500 mm with its unit, such as 84mm"
+    )
 
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.

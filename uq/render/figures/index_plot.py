@@ -315,7 +315,9 @@ def index_curves(
             panel.plot(at, value, marker=".", ms=4, label=words, **style)
             panel.fill_between(at, low, high, color=SHADES[i], alpha=0.25, lw=0)
         panel.set_ylim(range_of_indices(panel.get_ylim()))
-        title(panel, as_label(f"{kind.words}{bands}"), place)
+        title(
+            panel, as_label(f"{kind.words}{bands}"), place, quantity=as_label(kind.words, width=24)
+        )
     (logarithmic if is_wide(at) else roomy)(drawn[-1])
     drawn[-1].set_xlabel(labelled(result.dataset[along], unit.name))
     meaning = elements[0].meaning

@@ -214,13 +214,19 @@ def untitled(figure: Figure) -> None:
     """Remove the titles of a figure, which a journal puts into its caption."""
     for axes in figure.axes:
         axes.set_title("", loc="left")
+        axes.yaxis.label.set_visible(True)
     if isinstance(figure, Drawing):
         figure.suptitle("")
 
 
-def title(axes: Axes, *lines: str) -> None:
-    """Write lines of text above a panel: the quantity of its vertical axis and its subject."""
+def title(axes: Axes, *lines: str, quantity: str = "") -> None:
+    """Write lines of text above a panel: the quantity of its vertical axis and its subject.
+
+    Without titles, the quantity is the label of the axis.
+    """
     axes.set_title("\n".join(filter(None, lines)), loc="left")
+    if quantity:
+        axes.set_ylabel(quantity, visible=False)
 
 
 def above(axes: Axes, text: str) -> None:

@@ -124,7 +124,8 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
         above, remarks = [subtitle], [of_each]
     elif not alone:
         above, remarks = [", ".join(filter(None, above))], ["; ".join(filter(None, remarks))]
-    title(panels[0], *above, *remarks)
+    quantity = "" if panels[0].get_ylabel() else as_label(element.meaning, unit.name, 24)
+    title(panels[0], *above, *remarks, quantity=quantity)
     return finish(panels[0])
 
 

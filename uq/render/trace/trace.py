@@ -15,7 +15,7 @@ from uq.render.trace.verbs import VERBS
 from uq.result.elements import flags
 from uq.result.result import AnyResult, Result
 from uq.study.provenance import provenance
-from uq.text.keys import key_of, no_such_key, numbers_in, taken_apart
+from uq.text.keys import key_of, no_such_key, numbers_in, paths_of_numbers, taken_apart
 from uq.text.numbers import counted
 
 
@@ -193,6 +193,13 @@ def traced(result: Result, key: str, model: str | None = None) -> Trace:
         {name: str(attrs[name]) for name in ("code", *provenance()) if name in attrs},
         {name: now for name, now in provenance().items() if attrs.get(name) != now},
     )
+
+
+def keys_of(result: Result, begin: str = "") -> list[str]:
+    """Return the keys of the numbers of the verb with which a key begins."""
+    verb, options, _ = taken_apart(begin, {name: verb.options for name, verb in VERBS.items()})
+    whole = VERBS[verb].facts(result, options, ()).json
+    return [key_of(*path, verb=verb, options=options) for path in paths_of_numbers(whole)]
 
 
 def trace_json(record: Trace) -> dict[str, Any]:

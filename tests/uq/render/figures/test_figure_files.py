@@ -26,6 +26,7 @@ def files(ds):
 
 
 FORMATS = ("png", "svg", "pdf")
+PLACES = ("left", "center", "right")
 
 
 def all_files(ds, folder, **options):
@@ -187,10 +188,20 @@ def test_figures_have_the_width_asked_for(lives, width, tmp_path):
 
 
 def test_without_titles_nothing_stands_above_a_figure(lives, tmp_path, monkeypatch):
-    drawn = []
-    monkeypatch.setattr(plots, "write", lambda figure, path, formats: drawn.append(figure) or [])
-    plots.save_all(lives, tmp_path, titles=False)
-    assert drawn and not any(axes.get_title(loc="left") for figure in drawn for axes in figure.axes)
+    drawn = {}
+    monkeypatch.setattr(
+        plots, "write", lambda figure, path, formats: drawn.update({path.name: figure}) or []
+    )
+    plots.save_all(lives, tmp_path, every=True, titles=False)
+    kinds_drawn = {name.partition("-")[0] for name in drawn}
+    assert kinds_drawn >= {"events", "shares", "lifetime", "regimes", "scatter", "convergence"}
+    for figure in drawn.values():
+        above = [axes.get_title(loc=place) for axes in figure.axes for place in PLACES]
+        assert not any(text.strip() for text in (*above, figure.get_suptitle()))
+        assert not figure.texts or figure.texts == [figure._suptitle]
+    for name in ("convergence-life", "scatter-life", "scatter-work"):
+        label = drawn[name].axes[0].yaxis.label
+        assert label.get_visible() and "[" in label.get_text()
 
 
 @pytest.mark.parametrize(
@@ -211,7 +222,7 @@ def test_a_figure_that_does_not_exist_is_refused(lives, options, message, tmp_pa
 
 @pytest.mark.parametrize("text", ["84", "84 s", "wide", "1mm", "9 m"])
 def test_a_width_that_is_none_is_refused(text):
-    with pytest.raises(InputError, match="--width"):
+    with pytest.raises(InputError, match="--width .* 50 to 500 mm with its unit, such as 84mm"):
         width_in_metres(text)
 
 

@@ -330,5 +330,5 @@ def test_quantiles_are_a_table_to_print():
     table = plots.quantile_table(ds, "work")
     assert list(table.columns) == ["of", "quantile", "Work rate [W]", "95 % interval"]
     median = entries["work[side=left]"]["quantiles"]["0.5"]["value"]
-    assert table.iloc[1, :3].tolist() == ["left", "50 %", f"{median:.2f}"]
+    assert table.iloc[1, :3].tolist() == ["left", "50 %", f"{median:.3f}"]
     assert "never" in plots.quantile_table(ds, "life").to_string()
