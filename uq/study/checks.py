@@ -13,7 +13,7 @@ from uq.sampling.input_faults import InputFault, unknown
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.sampling.named_values import parameter_problem, read_settings, unknown_name
 from uq.text.element_names import place_of, places, whole_name
-from uq.text.quantities import misfit
+from uq.text.quantities import misfit, read_quantity
 
 Tables = Mapping[str, Mapping[str, Any]]
 """Valid entries of a study file: table -> key -> value, as parsed."""
@@ -154,6 +154,9 @@ def _unit_faults(
 ) -> Iterator[InputFault]:
     """Yield a fault if the unit of a number is incompatible with its output."""
     output = model.outputs.get(name)  # None: undeclared before rows have run
+    if output and output.is_lifetime and value is not None:
+        if (read_quantity(value) if isinstance(value, str) else value) < 0:
+            yield InputFault(path, "is before the start of the life", value)
     if output and isinstance(value, str) and (problem := misfit(value, name, output.unit)):
         if output.unit == "1" and isinstance(model.batch, RowByRow):
             of_life = output.is_lifetime

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from computed import study_of
 from own_machines import PAD, opened, run_program
 from own_study import own_study
 
 from uq.contract import Status
+from uq.errors import InputError
 
 LATE = """
 import uq
@@ -47,3 +49,22 @@ def test_a_negative_life_of_a_program_is_a_failed_row(uq, write_program):
     write_program(script, text)
     _, ds = run_program(uq)
     assert "a life cannot be negative" in ds["status"].attrs["example_non_finite"]
+
+
+@pytest.mark.parametrize(("threshold", "fits"), [("-4 days", False), (-1.0, False), ("0 s", True)])
+def test_no_life_is_compared_with_a_time_before_its_start(threshold, fits):
+    tables = wear() | {"analysis": {"thresholds": {"life": threshold}}}
+    if fits:
+        assert study_of(tables).analysis.thresholds["life"] == (0.0,)
+        return
+    with pytest.raises(InputError, match="is before the start of the life"):
+        study_of(tables)
+
+
+def wear():
+    rate = {"distribution": "lognormal", "median": 2e-10, "sigma": 0.5}
+    return {
+        "study": {"name": "wear", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 20},
+        "uncertain": {"rate": rate},
+    }
