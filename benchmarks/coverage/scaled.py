@@ -58,7 +58,7 @@ def scaled(repetitions):
             rng = np.random.default_rng(rows)
             for _ in range(repetitions):
                 rest = spread * rng.standard_normal(rows)
-                population = Population(element(rest, rng.standard_normal(rows), term), None)
+                population = Population(element(rest, rng.standard_normal(rows), term))
                 for p in PROBABILITIES:
                     time = np.exp(np.hypot(1.0, spread) * stats.norm.ppf(p))
                     below = population.below(time)
@@ -93,7 +93,7 @@ def _what_if(integrated, new, rows, repetitions):
         fresh = element(other, integrated * rng.standard_normal(rows), term)
         for p in (0.01, 0.05, 0.5, 0.95, 0.99):
             time = np.exp(mean + np.hypot(sd, integrated) * special.ndtri(p))
-            alone = Population(weighted, None).below(time)
+            alone = Population(weighted).below(time)
             tally.estimate(f"P(T < t) = {p:g}", p, alone)
             apart = difference(alone, share_to_compare(fresh.below(time)), 0.0)
             tally.estimate(f"difference from a fresh run, P(T < t) = {p:g}", 0.0, apart)

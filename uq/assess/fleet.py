@@ -22,9 +22,8 @@ from uq.result.result import AnyResult, Result
 from uq.sampling.designs import several
 from uq.sampling.levels import SHARED
 from uq.stats import estimate_json
-from uq.stats.clusters import Clusters
-from uq.stats.importance_weights import Smoothed, of_samples, quality, worth_in_words
-from uq.stats.intervals import Replicates
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
+from uq.stats.importance_weights import ImportanceWeights, of_samples, quality, worth_in_words
 from uq.text.units import beside
 
 if TYPE_CHECKING:
@@ -55,7 +54,7 @@ class Fleet:
         Whether the end of the life is wished for.
     units : str
         Of the life.
-    weights : Smoothed or None
+    weights : ImportanceWeights or None
         Of samples, where inspections have weighted them.
     """
 
@@ -70,7 +69,7 @@ class Fleet:
     notes: list[str]
     is_success: bool = False
     units: str = "s"
-    weights: Smoothed | None = None
+    weights: ImportanceWeights | None = None
 
     @property
     def ended(self) -> str:
@@ -203,9 +202,10 @@ def fleet_of(
                 f" {beside(repr(time), element.declared.unit)}; ask for an earlier time, or compute"
                 " a longer horizon"
             )
-    part = _part_of_samples(rows, units.place)
+    dependence = _dependence_of_samples(rows, units.place)
     idle = without_effect(inputs_of(rows), element.declared)
-    fleet_numbers = FleetNumbers(units, size, allow, part, SHARED in rows.levels_that_vary(idle))
+    varies = SHARED in rows.levels_that_vary(idle)
+    fleet_numbers = FleetNumbers(units, size, allow, dependence, varies)
     first = {p: fleet_numbers.first(p) for p in analysis.quantiles}
     ended = {
         time: (fleet_numbers.failed(time), fleet_numbers.at_most_allowed(time)) for time in times
@@ -255,13 +255,12 @@ def _refuse(units: Units, size: int) -> None:
         )
 
 
-def _part_of_samples(rows: Result, place: Nesting) -> Replicates:
-    """Return the independent part of each sample, shape (samples,)."""
-    part = rows.replicates
-    if isinstance(part, Clusters) and part.together is not None:
+def _dependence_of_samples(rows: Result, place: Nesting) -> Dependence:
+    """Return the dependence between samples."""
+    if rows.dependence.shared is not None:
         _, first = np.unique(place.sample, return_index=True)
-        return part[first]
-    return None if rows.has_independent_samples else place.replicate
+        return rows.dependence[first]
+    return INDEPENDENT if rows.has_independent_samples else Dependence(place.replicate)
 
 
 def fleet_facts(fleets: Fleet) -> Fact:

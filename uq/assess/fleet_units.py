@@ -28,7 +28,7 @@ from uq.result.nesting import Nesting
 from uq.result.result import Result
 from uq.sampling.levels import CHANCE, OWN, SHARED
 from uq.stats.counting import fleet_failure_probabilities, more_than
-from uq.stats.intervals import Replicates
+from uq.stats.dependent_rows import Dependence
 
 _NODES = 120
 """Integration steps between standard normal quantiles of -6 and 6, for inputs integrated per world.
@@ -132,7 +132,7 @@ class Units:
         means = np.divide(sums, count, out=np.full(count.shape, np.nan), where=count > 0)
         return means[:, None] if self.are_alike else means
 
-    def fleet(self, size: int, allow: int, part: Replicates) -> Sample:
+    def fleet(self, size: int, allow: int, dependence: Dependence) -> Sample:
         """Return the population of the times by which more than `allow` of `size` have ended.
 
         Its rows are worlds, each the law of this time. Worlds with too few units have none.
@@ -153,7 +153,7 @@ class Units:
             _MoreThan(self, size, allow),
             self.of_worlds,
         )
-        return as_sample(worlds, part)
+        return as_sample(worlds, dependence)
 
     @property
     def _mask(self) -> Mask:

@@ -153,7 +153,7 @@ class Pair:
     def __init__(self, first: Result, second: Result) -> None:
         self.rows = (first.independent, second.independent)
         self.kinship = kinship(first, second)
-        self._replicate = [rows.replicates for rows in self.rows]
+        self._dependence = [rows.dependence for rows in self.rows]
         rows = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
         self._shared = shared_rows(*self.rows) if rows else None
         self._paired = rows or self.kinship in (Kinship.REPLICATES, Kinship.ROWS_SAME)
@@ -178,7 +178,7 @@ class Pair:
             return Estimate(value, *self._beyond_jumps(value, ends, estimator, samples))
         if self.kinship is Kinship.WEIGHTED:
             return two_samples.difference(estimates[0], estimates[1], self.unpaired)
-        if estimator.counts_hits and all(replicate is None for replicate in self._replicate):
+        if estimator.counts_hits and all(rows.is_none for rows in self._dependence):
             estimates = [_newcombe(sample) for sample in samples]
         elif estimator.averages:
             estimates = [self._averaged(i, sample) for i, sample in enumerate(samples)]
@@ -251,11 +251,11 @@ class Pair:
         """
         if self._shared is None and self.kinship is not Kinship.REPLICATES:
             return self.unpaired
-        pulls = [_pull(estimator, sample) for sample in samples]
+        influences = [_influence(estimator, sample) for sample in samples]
         if self._shared is not None:
-            first, second = (pull.numbers for pull in pulls)
+            first, second = (influence.numbers for influence in influences)
             return correlation(first, second, self._shared, is_share=estimator.is_share)
-        means = [self._by_replicate(MEAN, i, pull) for i, pull in enumerate(pulls)]
+        means = [self._by_replicate(MEAN, i, rows) for i, rows in enumerate(influences)]
         if not all(np.isfinite(mean).all() and not intervals.is_constant(mean) for mean in means):
             return np.nan
         return float(np.asarray(np.corrcoef(means))[0, 1])
@@ -267,40 +267,39 @@ class Pair:
 
         Of the difference row by row where both results have the same ones: most jumps cancel.
         """
-        rows, kept = self.rows, [sample.kept for sample in samples]
+        (first, second), kept = self.rows, [sample.kept for sample in samples]
         influence = [estimator.influence(sample.numbers[sample.kept]) for sample in samples]
-        parts = [of[k] for of, k in zip(self._replicate, kept, strict=True) if of is not None]
+        dependence = [of[k] for of, k in zip(self._dependence, kept, strict=True)]
         if np.array_equal(kept[0], kept[1]) and all(
-            np.array_equal(rows[0].dataset[name].values, rows[1].dataset[name].values)
+            np.array_equal(first.dataset[name].values, second.dataset[name].values)
             for name in ("replicate", "group", "block")
         ):
-            influence, parts = [influence[1] - influence[0]], parts[:1]
-        for of_rows, part in zip(influence, parts, strict=True):
-            ends = beyond_jumps(value, ends, of_rows, part, intervals.CONFIDENCE)
+            influence, dependence = [influence[1] - influence[0]], dependence[:1]
+        for of_rows, rows in zip(influence, dependence, strict=True):
+            ends = beyond_jumps(value, ends, of_rows, rows.neighbours, intervals.CONFIDENCE)
         return ends
 
     def _averaged(self, i: int, sample: SelectedRows) -> Estimate:
         """Return a mean of probabilities with the interval from which a difference is built."""
-        part = intervals.replicates_of_some(self._replicate[i], sample.kept)
-        return share_to_compare(sample.numbers[sample.kept], part=part)
+        return share_to_compare(sample.numbers[sample.kept], self._dependence[i][sample.kept])
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: SelectedRows) -> Floats:
-        of, count = self._replicate[i], int(self.rows[i].dataset.attrs["replicates"])
-        assert of is not None, "independent rows have no replicates"
+        labels, count = self._dependence[i].labels, int(self.rows[i].dataset.attrs["replicates"])
+        assert labels is not None, "independent rows have no replicates"
         estimates = np.full(count, np.nan)
         for r in range(count):
-            values = sample.numbers[sample.kept & (of == r)]
+            values = sample.numbers[sample.kept & (labels == r)]
             if len(values):
                 estimates[r] = estimator.of(values)
         return estimates
 
 
-def _pull(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
+def _influence(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
     """Return the influence of each row, 0 of those that take no part."""
-    pull = np.zeros(len(sample.numbers))
+    influence = np.zeros(len(sample.numbers))
     if sample.kept.any():
-        pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
-    return SelectedRows(sample.kept, pull)
+        influence[sample.kept] = estimator.relative_influence(sample.numbers[sample.kept])
+    return SelectedRows(sample.kept, influence)
 
 
 def _students(estimator: Estimator, sample: SelectedRows, estimate: Estimate) -> Estimate:

@@ -366,8 +366,8 @@ def learnt_terms(law: RowLaw | None, lives: Floats, time: float) -> tuple[Floats
     Returns
     -------
     tuple of ndarray, shape (n, terms), or None
-        The means over the law of each row of the terms (`uq.stats.clusters.SharedInfluence`), and
-        of the terms times whether T < time.
+        The means over the law of each row of the terms of the shared law
+        (`uq.stats.dependent_rows.SharedInfluence`), and of the terms times whether T < time.
     """
     if isinstance(law, LearntScale) and law.terms is not None:
         return law.terms.means, law.terms_below(lives, time, law.terms)

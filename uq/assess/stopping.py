@@ -22,7 +22,8 @@ from uq.indices.methods import METHODS, kinds_with_intervals
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PATHS
-from uq.stats import group_sequential, intervals
+from uq.stats import group_sequential
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import NOTHING, Estimate, rounded_text
 from uq.stats.moments import corrected_mean_interval
 from uq.stats.weighted_means import EXACT
@@ -160,11 +161,10 @@ def _statistics(design: "DesignTable", result: Result) -> Iterator[InterimEstima
     until, level = design.until, confidence(design)
     assert until is not None
     rows = result.independent
-    replicate = rows.replicates
     names = {element.name for element in rows.named_elements(until.output)}
     for element in elements_with_laws(rows, [until.output.partition("[")[0]]):
         if element.name in names:
-            estimate = statistic(element, until, replicate, level)
+            estimate = statistic(element, until, rows.dependence, level)
             units = "1" if until.threshold is not None else element.units
             lost = _lost(element)
             what = f"{until.estimate} of {element.name}"
@@ -180,9 +180,7 @@ def _lost(element: Element) -> str:
     )
 
 
-def statistic(
-    element: Element, until: "Until", replicate: intervals.Replicates, level: float
-) -> Estimate:
+def statistic(element: Element, until: "Until", dependence: Dependence, level: float) -> Estimate:
     """Estimate the statistic that a study monitors, for an element of independent rows.
 
     Parameters
@@ -190,7 +188,7 @@ def statistic(
     element : Element
     until : Until
         Not of an index.
-    replicate : ndarray of int, shape (n,), or None
+    dependence : Dependence
     level : float
         Confidence of the interval.
 
@@ -198,7 +196,7 @@ def statistic(
     -------
     Estimate
     """
-    sample = as_sample(element, replicate, level)
+    sample = as_sample(element, dependence, level)
     if until.threshold is not None:
         is_above = until.above is not None
         return (sample.probability_above if is_above else sample.probability_below)(until.threshold)
@@ -209,10 +207,10 @@ def statistic(
     if not np.isfinite(element.at_most).all():
         return Estimate(reason="some rows never end, or are censored")
     mean = sample.moments().mean
-    if replicate is None or intervals.parts_are_independent(replicate) or not mean.has_interval:
+    if dependence.has_independent_parts or not mean.has_interval:
         return mean
     # A few replicates show little of the skewness of their means.
-    low, high = corrected_mean_interval(element.at_least, replicate[element.present], level)
+    low, high = corrected_mean_interval(element.at_least, dependence[element.present], level)
     return replace(mean, low=low, high=high)
 
 

@@ -21,8 +21,8 @@ from uq.result.nesting import size_in_words
 from uq.result.result import Result
 from uq.result.weights import ONLY_INSPECTED
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import Smoothed
-from uq.stats.intervals import replicates_of_some, share_interval
+from uq.stats.importance_weights import ImportanceWeights
+from uq.stats.intervals import share_interval
 from uq.stats.weighted_means import weighted_share
 from uq.study.file import AnalysisTable
 from uq.text.units import ReadableUnit, typical, unit_of
@@ -114,7 +114,7 @@ class Summary:
         The largest number of rows that lack an element because they failed.
     notes : list of str
         Sentences on missing estimates.
-    weights : Smoothed, optional
+    weights : ImportanceWeights, optional
         Of the rows, where inspections have weighted them.
     """
 
@@ -125,7 +125,7 @@ class Summary:
     outputs: Mapping[str, Described]
     most_failed: int
     notes: list[str]
-    weights: Smoothed | None = None
+    weights: ImportanceWeights | None = None
 
     @property
     def samples(self) -> int:
@@ -281,21 +281,20 @@ def _categories(result: Result, shown: Collection[str]) -> list[str]:
 
 
 def category_shares(
-    rows: Result, name: str, weights: Smoothed | None = None
+    rows: Result, name: str, weights: ImportanceWeights | None = None
 ) -> dict[str, Statistic]:
     """Return the share of each label of a category among the independent rows that did not fail.
 
     The name is an output, or one element of it.
     """
-    replicate = rows.replicates
+    dependence = rows.dependence
 
     def estimate(hits: Mask, kept: Mask) -> Estimate:
-        part = replicates_of_some(replicate, kept)
         if weights is None:
-            return share_of(hits[kept], part)
+            return share_of(hits[kept], dependence[kept])
         if weights.refusal:
             return Estimate(reason=weights.refusal)
-        return weighted_share(hits[kept].astype(float), weights.weights[kept], part)
+        return weighted_share(hits[kept].astype(float), weights.weights[kept], dependence[kept])
 
     return {
         label: Statistic(
@@ -303,7 +302,7 @@ def category_shares(
             label,
             estimate(hits, kept),
             kind=SHARE,
-            failed=failed_share_bounds(hits, ~kept, replicate) if weights is None else None,
+            failed=failed_share_bounds(hits, ~kept, dependence) if weights is None else None,
             facts={"count": int(hits[kept].sum())},
             estimator=share(),
             by=(share_of, share_interval) if weights is None else (weighted_share,),

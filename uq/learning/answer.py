@@ -29,7 +29,7 @@ from uq.result.result import AnyResult, Result
 from uq.result.weights import MODEL_ERROR
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import Smoothed, effective_rows
+from uq.stats.importance_weights import ImportanceWeights, effective_rows
 from uq.stats.weighted_means import moments_of_rows
 from uq.text.numbers import percent
 
@@ -41,7 +41,7 @@ class Learnt:
     Attributes
     ----------
     inspections : list of Inspection
-    worst : Smoothed
+    worst : ImportanceWeights
         The least reliable weights, among all inspected units and the units never inspected.
     inputs : list of InputLearnt
     confounded : list of Confounded
@@ -54,7 +54,7 @@ class Learnt:
     """
 
     inspections: list[Inspection]
-    worst: Smoothed
+    worst: ImportanceWeights
     inputs: list[InputLearnt]
     confounded: list[Confounded]
     lives: list[Remaining]

@@ -153,12 +153,12 @@ def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Poster
 
 def _after(result: Result, name: str, asked: tuple[float, ...]) -> PosteriorMoments:
     values, weights = result.dataset[name].values, result.dataset[WEIGHT].values
-    part, of_rows, within = result.replicates, values, np.zeros(len(values))
+    dependence, of_rows, within = result.dependence, values, np.zeros(len(values))
     if name == learnt_input(result):
         of_rows, within = moments_of_input(result, inputs_of(result))
-    mean, sd = moments_of_rows(of_rows, weights, part, within)
-    mean = trusted(mean, weights * of_rows, part, hopeless=_FEW_ROWS)
-    sd = trusted(sd, weights * (of_rows**2 + within), part, hopeless=_FEW_ROWS)
+    mean, sd = moments_of_rows(of_rows, weights, dependence, within)
+    mean = trusted(mean, weights * of_rows, dependence, hopeless=_FEW_ROWS)
+    sd = trusted(sd, weights * (of_rows**2 + within), dependence, hopeless=_FEW_ROWS)
     return PosteriorMoments(mean, sd, quantiles(values, weights, asked))
 
 

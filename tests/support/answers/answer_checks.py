@@ -12,7 +12,7 @@ from scipy.stats import binomtest
 
 from uq.assess.answer.repeat_interval import OPENING
 from uq.assess.findings import Findings
-from uq.result.elements import independent_rows, labels, named_elements, replicates_of
+from uq.result.elements import dependence_of, independent_rows, labels, named_elements
 from uq.result.result import Result
 from uq.result.result_file import failed
 
@@ -205,8 +205,8 @@ class Checker:
 
     def width_again(self, numbers, estimate):
         """Return the width of the prediction interval, from rows drawn with replacement."""
-        random, part = np.random.default_rng(0), replicates_of(self.rows)
-        groups = np.arange(len(numbers)) if part is None else part
+        random, labels = np.random.default_rng(0), dependence_of(self.rows).labels
+        groups = np.arange(len(numbers)) if labels is None else labels
         rows = [np.flatnonzero(groups == group) for group in np.unique(groups)]
         drawn = (random.integers(len(rows), size=len(rows)) for _ in range(200))
         again = [estimate(numbers[np.concatenate([rows[i] for i in each])]) for each in drawn]

@@ -108,7 +108,7 @@ def test_a_few_rows_say_what_very_many_say(case):
         assert abs(probability.value - p) < (probability.high - probability.low) + 4 * np.sqrt(
             p * (1 - p) / 60_000
         )
-        plain = Population(rows.element.plain, None).below(time)
+        plain = Population(rows.element.plain).below(time)
         assert probability.high - probability.low < 0.9 * (plain.high - plain.low)
         assert rows.quantile(probability.value).value == pytest.approx(time, rel=1e-9)
 

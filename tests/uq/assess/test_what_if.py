@@ -128,7 +128,7 @@ def test_quantiles_of_an_angle_keep_its_sign():
     nothing = np.zeros(400, dtype=bool)
     values = np.linspace(-2.0, 1.0, 400)
     element = Element("psi", "psi", angle, {}, values, nothing, nothing, None, np.ones(400))
-    quantile = Population(element, None).quantile(0.1)
+    quantile = Population(element).quantile(0.1)
     assert quantile.low < -1.7 < quantile.high < -1.4
 
 

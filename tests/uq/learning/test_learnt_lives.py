@@ -138,4 +138,4 @@ def test_no_end_of_an_interval_lies_before_a_time_that_the_unit_outlived():
     unit = as_unit(update(rows, [told]), "A")
     (element,) = elements_with_laws(Result(unit), ["life"])
     assert element.law is None
-    assert Population(element, None).quantile(0.01).low >= SEEN
+    assert Population(element).quantile(0.01).low >= SEEN

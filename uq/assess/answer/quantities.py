@@ -325,7 +325,7 @@ def _quantity(
             fine,
             element.is_angle,
             end_verb(element),
-            never_ending(element, context.replicate) if element.is_lifetime else NOTHING,
+            never_ending(element, context.rows.dependence) if element.is_lifetime else NOTHING,
             **without_value(element),
             is_life=element.is_lifetime,
             by=by,
@@ -333,7 +333,7 @@ def _quantity(
         tuple(events_of(findings, element, described)),
         _as_computed(ranking_of_element(findings, element, unit), described),
         wanted,
-        earliest(findings, element, unit, context.replicate)
+        earliest(findings, element, unit, context.rows.dependence)
         if _may_end_badly(findings.result, element)
         else None,
         assumed_scales(findings.result, element),

@@ -11,9 +11,9 @@ from uq.contract import Mask
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.result.variables import error_name
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows
-from uq.stats.intervals import Replicates
 from uq.text.numbers import counted, percent
 
 _EFFECTIVE = StatisticKind(form="number", text="{:.0f}", readers=COUNT.readers)
@@ -27,9 +27,9 @@ def counts(element: Element, context: Context) -> Iterator[Statistic]:
         yield Statistic((name,), name, Estimate(number), "rows", COUNT)
 
 
-def never_ending(element: Element, replicate: Replicates) -> Estimate:
+def never_ending(element: Element, dependence: Dependence) -> Estimate:
     """Estimate the probability that a life never ends; unknown where censored rows may not end."""
-    return as_sample(element, replicate).never_ending()
+    return as_sample(element, dependence).never_ending()
 
 
 def effective(element: Element, context: Context) -> Iterator[Statistic]:

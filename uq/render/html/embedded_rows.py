@@ -25,7 +25,6 @@ from uq.render.html.tolerances import event_key, tolerances
 from uq.result.element import Element
 from uq.result.elements import flags
 from uq.result.result import Result
-from uq.stats.clusters import Clusters
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain
 from uq.text.numbers import grouped, printed, threshold
@@ -194,8 +193,8 @@ def part_of(rows: Result, columns: int) -> Result:
     most = min(MOST_ROWS, MOST_NUMBERS // columns)
     if count <= most:
         return rows
-    part = rows.replicates
-    sample = np.asarray(part) if isinstance(part, Clusters) else np.arange(count)
+    labels = rows.dependence.labels
+    sample = np.arange(count) if labels is None or rows.dependence.samples is None else labels
     names, size = np.unique(sample, return_counts=True)
     order = np.random.default_rng(int(rows.dataset.attrs["seed"])).permutation(len(names))
     chosen = names[order[np.cumsum(size[order]) <= most]]

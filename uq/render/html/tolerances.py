@@ -24,7 +24,6 @@ from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.law import Law
 from uq.sampling.listed_values import IntegerRange
-from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain, toml
@@ -206,9 +205,9 @@ def _quality(effective_rows: float, pareto_k: float, count: int, name: str) -> s
 
 def _independent(rows: Result) -> tuple[int, str]:
     """Return the number of independent samples, or of rows if each sample is one row."""
-    part = rows.replicates
-    if isinstance(part, Clusters) and part.are_samples:
-        return len(np.unique(part)), "samples"
+    labels = rows.dependence.labels
+    if labels is not None and rows.dependence.are_samples:
+        return len(np.unique(labels)), "samples"
     return len(rows), "rows"
 
 
