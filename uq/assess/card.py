@@ -36,7 +36,7 @@ from uq.text.units import readable
 MOST_CAUSES = 4
 
 
-class Cause(NamedTuple):
+class LeadingInput(NamedTuple):
     """Inputs that contribute alike to the scatter of the subject of a study.
 
     Attributes
@@ -83,7 +83,7 @@ class Card:
         Assumed inputs to which every life is proportional.
     assumptions : str
         How many laws are assumed, and which of the causes; "" for none.
-    causes : tuple of Cause
+    causes : tuple of LeadingInput
     index : str
         Key of the index of the causes: ``S1``.
     share_of : str
@@ -108,7 +108,7 @@ class Card:
     headline: tuple[Headline, ...] = ()
     assumed: tuple[str, ...] = ()
     assumptions: str = ""
-    causes: tuple[Cause, ...] = ()
+    causes: tuple[LeadingInput, ...] = ()
     index: str = ""
     share_of: str = ""
     indices_first: bool = False
@@ -186,7 +186,7 @@ def _share_of(ranking: Ranking, is_life: bool) -> str:
     return "variance"
 
 
-def _assumptions(result: Result, causes: Sequence[Cause]) -> str:
+def _assumptions(result: Result, causes: Sequence[LeadingInput]) -> str:
     laws = [name for name in result.study.uncertain if name in result.dataset.variables]
     assumed = [name for name in laws if mark_of(result, name) == ASSUMED]
     if not assumed:
@@ -205,7 +205,7 @@ def _ranking(answer: Answer) -> Ranking | None:
     return None if answer.lead is None else answer.lead.ranking
 
 
-def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator[Cause]:
+def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator[LeadingInput]:
     """Yield the leading causes, each with the same number under half its scatter."""
     if ranking is None or ranking.leader is None:
         return
@@ -227,7 +227,7 @@ def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator
                 ),
                 None,
             )
-        yield Cause(contribution, effect, shown)
+        yield LeadingInput(contribution, effect, shown)
 
 
 def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iterator[str]:
@@ -258,13 +258,16 @@ def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iter
 
 def _moved(lead: Quantity | None, error: Any) -> str:
     """Return the bound if every value were wrong by its stated error; "" if that is the same."""
-    promise = None if lead is None else lead.promise
-    if promise is None:
+    tolerance_bound = None if lead is None else lead.tolerance_bound
+    if tolerance_bound is None:
         return ""
-    for name, bound, towards in (("lower", promise.lower, -inf), ("upper", promise.upper, inf)):
+    for name, bound, towards in (
+        ("lower", tolerance_bound.lower, -inf),
+        ("upper", tolerance_bound.upper, inf),
+    ):
         if isfinite(bound) and error[name] is not None:
-            moved = promise.unit.text(error[name], towards)
-            return f" (bound then {moved})" * (moved != promise.unit.text(bound, towards))
+            moved = tolerance_bound.unit.text(error[name], towards)
+            return f" (bound then {moved})" * (moved != tolerance_bound.unit.text(bound, towards))
     return ""
 
 

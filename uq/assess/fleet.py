@@ -11,10 +11,10 @@ from uq.assess.fact import Fact
 from uq.assess.fleet_numbers import Banded, FleetNumbers
 from uq.assess.fleet_units import Units, units_of
 from uq.assess.integrated_inputs import without_effect
-from uq.assess.population import BY_WEIGHTS
 from uq.assess.row_inputs import inputs_of
 from uq.assess.summary import why_no_intervals
 from uq.assess.summary_facts import quality_facts
+from uq.assess.weighted_mixture import BY_WEIGHTS
 from uq.errors import InputError, choices
 from uq.result.element import Element
 from uq.result.nesting import Nesting, samples_have, size_in_words
@@ -190,7 +190,7 @@ def fleet_of(
     if bad := [time for time in by if not 0 < time < inf]:
         raise InputError(f"uq fleet: {bad[0]!r} is not a time after the start")
     rows = result.independent
-    element = the_life(rows, output)
+    element = lifetime_element(rows, output)
     units = units_of(rows, element, plain=plain)
     _refuse(units, size)
     analysis = result.analysis
@@ -230,7 +230,7 @@ def fleet_of(
     return Fleet(element.name, size, allow, *numbers, notes, *of_life, weights)
 
 
-def the_life(rows: Result, output: str | None) -> Element:
+def lifetime_element(rows: Result, output: str | None) -> Element:
     """Return the named life, or the only one."""
     outputs = rows.outputs
     shown = [name for name in rows.shown_outputs(rows.analysis) if outputs[name].is_lifetime]

@@ -10,7 +10,7 @@ from scipy import special
 from uq.assess import random_effects
 from uq.assess.failed_rows import bounds, with_failed_at
 from uq.assess.fleet_units import Units
-from uq.assess.population import first_step
+from uq.assess.weighted_mixture import first_step
 from uq.sampling.designs import several
 from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate

@@ -16,7 +16,7 @@ from uq.result.result import Result
 from uq.sampling.dependence import normal_correlations
 from uq.sampling.truncation import OUTSIDE_AT_MOST, factor_ends, log_density_between, ppf_within
 from uq.stats.dependent_rows import Dependence
-from uq.stats.importance_weights import ImportanceWeights, no_weights, smoothed
+from uq.stats.importance_weights import ImportanceWeights, impossible_weights, smoothed
 
 
 def log_ratio(rows: int, old: Inputs, new: Inputs, integrated: Collection[str] = ()) -> Floats:
@@ -172,7 +172,7 @@ class Weighting:
         """Return the weights of rows in which these inputs are integrated."""
         for name in changed_laws(self._old, self._new):
             if name not in inputs and (share := share_without_rows(self._old, self._new, name)):
-                return no_weights(
+                return impossible_weights(
                     len(self._rows),
                     f"uncertain.{name}: has {share:.2g} of its probability outside the study's"
                     " law, where there are no rows; run it as a separate study",
@@ -180,5 +180,5 @@ class Weighting:
         weights = log_ratio(len(self._rows), self._old, self._new, inputs)
         if not np.isfinite(weights.max()):
             why = "no row of this result is possible under the other laws"
-            return no_weights(len(weights), why)
+            return impossible_weights(len(weights), why)
         return smoothed(weights, self._dependence)

@@ -72,7 +72,7 @@ class IndependentScale:
             share = self.term.below(np.log(time) - np.log(lives) + self.drawn)
         return np.where(np.isnan(lives), 0.0, share)
 
-    def longer(self, z: Floats) -> Iterator[Floats]:
+    def log_life_shifts(self, z: Floats) -> Iterator[Floats]:
         """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in self.term.at(z):
             yield at - self.drawn
@@ -133,7 +133,7 @@ class ConditionalScale:
             share = cdf_between(self.law, value / self.other, *ends)
         return np.asarray(special.ndtr((special.ndtri(share) - self.mean) / self.deviation))
 
-    def longer(self, z: Floats) -> Iterator[Floats]:
+    def log_life_shifts(self, z: Floats) -> Iterator[Floats]:
         """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in np.sign(self.exponent) * z:
             u = special.ndtr(self.mean + self.deviation * at)
@@ -150,8 +150,8 @@ class ConditionalScale:
         """Mean growth of the logarithm of each life, and its variance, shapes (n,)."""
         nodes, weights = (array[0] for array in normal_rule(np.array([-np.inf, np.inf]), _NODES))
         mean = square = np.zeros(self.drawn.shape)
-        for weight, longer in zip(weights, self.longer(nodes), strict=True):
-            mean, square = mean + weight * longer, square + weight * longer**2
+        for weight, shifts in zip(weights, self.log_life_shifts(nodes), strict=True):
+            mean, square = mean + weight * shifts, square + weight * shifts**2
         return mean, np.maximum(square - mean**2, 0.0)
 
 

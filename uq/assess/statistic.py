@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from uq.assess.fact import Functions
 from uq.assess.joint_bounds import JointBound, joint_bounds
-from uq.assess.population import as_sample
 from uq.assess.sample import Estimator, Sample
+from uq.assess.weighted_mixture import as_sample
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, interval_text, value_text

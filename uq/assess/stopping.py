@@ -15,9 +15,9 @@ import numpy as np
 from uq.assess.chosen_targets import wholes
 from uq.assess.design_sample import sample_of
 from uq.assess.integrated_inputs import elements_with_laws
-from uq.assess.population import as_sample
 from uq.assess.sensitivities import indices_of_target
 from uq.assess.targets import IndexTarget, lightened, number_of
+from uq.assess.weighted_mixture import as_sample
 from uq.indices.methods import METHODS, kinds_with_intervals
 from uq.result.element import Element
 from uq.result.result import Result

@@ -7,8 +7,8 @@ import xarray as xr
 
 from uq.assess.failed_rows import outer, with_failed_at
 from uq.assess.integrated_inputs import elements_with_laws
-from uq.assess.population import as_sample
 from uq.assess.sample import Sample
+from uq.assess.weighted_mixture import as_sample
 from uq.contract import Floats
 from uq.result.result import AnyResult, Result
 from uq.stats.intervals import Ends

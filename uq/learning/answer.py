@@ -9,8 +9,8 @@ from unicodedata import normalize
 import numpy as np
 
 from uq.assess.fact import Fact
-from uq.assess.population import Population
 from uq.assess.summary_facts import quality_facts
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.errors import InputError
 from uq.learning.inspections import Inspection
 from uq.learning.posterior import InformationGain, Posterior, information_gains, posterior
@@ -188,7 +188,7 @@ def learnt_facts(summary: Learnt) -> Fact:
                 remaining_life.effective_rows, (posterior, remaining, effective_rows)
             ),
         }
-        return fact(members, (posterior, remaining, Population))
+        return fact(members, (posterior, remaining, WeightedMixture))
 
     units: dict[str, dict[str, Any]] = {}
     for remaining_life in summary.lives:

@@ -138,10 +138,10 @@ class Posterior:
         return [self.any_unit.weights, *(weighted.weights for weighted in self.units.values())]
 
     @property
-    def pulls(self) -> Floats:
+    def influence(self) -> Floats:
         """Influence of each row on the shared law, shape (n, terms)."""
         total = sum(
-            weighted.pulls for weighted in self.units.values() if weighted.pulls is not None
+            weighted.influence for weighted in self.units.values() if weighted.influence is not None
         )
         return np.asarray(total - np.mean(total, axis=0))
 

@@ -147,14 +147,21 @@ def _of_law(posterior: Posterior, scale: str, attrs: dict[str, Any]) -> dict[str
     """Return the variables of the law of an input that all units share."""
     if (law := posterior.law) is None:
         return {}
-    pulls = posterior.pulls
-    of_pulls = attrs | {"long_name": f"pull on terms of the law of {scale}", ROWS: len(pulls)}
+    influence = posterior.influence
+    influence_attrs = attrs | {
+        "long_name": f"pull on terms of the law of {scale}",
+        ROWS: len(influence),
+    }
     of_terms = attrs | {"long_name": "terms in the row"}
     of_scores = attrs | {"long_name": f"normal score before, of {scale}"}
-    units = np.stack([unit.without_own(pulls) for unit in posterior.units.values()])
+    units = np.stack([unit.without_own(influence) for unit in posterior.units.values()])
     return {
-        LAW_INFLUENCE: (("row", "term"), posterior.any_unit.without_own(pulls), of_pulls),
-        UNIT_INFLUENCE: (("inspected", "row", "term"), units, of_pulls),
+        LAW_INFLUENCE: (
+            ("row", "term"),
+            posterior.any_unit.without_own(influence),
+            influence_attrs,
+        ),
+        UNIT_INFLUENCE: (("inspected", "row", "term"), units, influence_attrs),
         LAW_TERMS: (("row", "term"), posterior.any_unit.terms, of_terms),
         LAW_SCORES: (SCORE, law.scores, of_scores),
     }
@@ -237,11 +244,11 @@ def as_unit(result: AnyResult, label: str) -> xr.Dataset:
 def _law_of_unit(result: Result, rows: Result, place: int) -> dict[str, Any]:
     """Return the variables of the shared law for the rows of a unit."""
     name, inputs = result.dataset.attrs[INTEGRATED], inputs_of(rows)
-    law, pulls = result.dataset[LAW_SCORES], result.dataset[UNIT_INFLUENCE]
+    law, influence = result.dataset[LAW_SCORES], result.dataset[UNIT_INFLUENCE]
     below = cdf_within(inputs.laws[name], rows.dataset[name].values, inputs.bounds[name])
     return {
-        LAW_INFLUENCE: (pulls.dims[1:], pulls.values[place], pulls.attrs),
-        LAW_TERMS: (pulls.dims[1:], terms_at(law.values, ndtri(below))),
+        LAW_INFLUENCE: (influence.dims[1:], influence.values[place], influence.attrs),
+        LAW_TERMS: (influence.dims[1:], terms_at(law.values, ndtri(below))),
         LAW_SCORES: law,
     }
 

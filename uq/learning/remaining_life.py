@@ -7,8 +7,8 @@ from math import inf
 import numpy as np
 
 from uq.assess.integrated_inputs import elements_with_laws, inputs_of
-from uq.assess.population import Population
 from uq.assess.scale_laws import ConditionalLaw
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.contract import Floats, Output
 from uq.errors import InputError, choices
 from uq.learning.inspections import Inspection, InspectionKind
@@ -61,13 +61,13 @@ def over_shared(result: Result, element: Element, seen: float, time: float) -> d
     if exponent is None:
         return {}
     shared, weights = result.dataset[name].values, result.dataset[WEIGHT].values
-    longer = shared**exponent
-    latest = time * longer / longer.min()
+    life_factor = shared**exponent
+    latest = time * life_factor / life_factor.min()
     if (element.censored & (element.values < latest)).any():
         return {}
     present = element.present
-    lives = element.values[present] / longer[present]  # with a shared input of 1
-    before, by = (_below(lives, weights[present], at / longer) for at in (seen, time))
+    lives = element.values[present] / life_factor[present]  # with a shared input of 1
+    before, by = (_below(lives, weights[present], at / life_factor) for at in (seen, time))
     with np.errstate(divide="ignore", invalid="ignore"):
         ended = (by - before) / (1 - before)
     runs = before < 1
@@ -215,7 +215,7 @@ def _of_unit(
 def _of_life(
     element: Element, dependence: Dependence, label: str, seen: float, times: Sequence[float]
 ) -> Remaining:
-    runs = Population(element, dependence).outliving(seen) if seen > 0 else Estimate(1.0)
+    runs = WeightedMixture(element, dependence).outliving(seen) if seen > 0 else Estimate(1.0)
     assert element.weights is not None
     alive = np.where(element.censored & (element.values <= seen), 0.0, element.above(seen))
     weights, still = element.weights * alive, alive > 0
@@ -232,7 +232,7 @@ def _of_life(
         weights=weights,
         most=element.most * still.mean() / share,
     )
-    survivors = Population(running, dependence)
+    survivors = WeightedMixture(running, dependence)
     return replace(
         nothing,
         life={p: _after(seen, survivors.quantile(p)) for p in PROBABILITIES},

@@ -16,9 +16,9 @@ from uq.learning.scale_posterior import (
     edges_of_rows,
     in_order,
     in_order_of_weight,
+    influence_of,
     masses,
     prior_places,
-    pulls_of,
 )
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.result.nesting import Nesting
@@ -100,7 +100,7 @@ class WeightedRows:
         Its law in each row of an inspected unit (`LearntScale`).
     terms : ndarray, shape (m, terms), or None
         Terms of an input shared by all units, averaged over its law in each row.
-    pulls : ndarray, shape (m, terms), or None
+    influence : ndarray, shape (m, terms), or None
         Influence of each row, as an inspected unit, on that law.
     """
 
@@ -109,16 +109,16 @@ class WeightedRows:
     scale: Floats | None
     scores: Floats | None = None
     terms: Floats | None = None
-    pulls: Floats | None = None
+    influence: Floats | None = None
 
-    def without_own(self, pulls: Floats) -> Floats:
+    def without_own(self, influence: Floats) -> Floats:
         """Return the influence of each row on the law used by other rows, shape (n, terms).
 
         The influence of a row on itself, and the effect of values stratified over the law, are
         excluded.
         """
         assert self.terms is not None
-        adjusted = pulls.copy()
+        adjusted = influence.copy()
         adjusted[self.rows] -= self.weights.weights[:, None] * self.terms
         return adjusted
 
@@ -199,7 +199,7 @@ def inspected(
     if law is None:
         return weighted
     terms = worth @ law.terms / np.where(of_rows > 0, of_rows, 1.0)[:, None]
-    return replace(weighted, terms=terms, pulls=pulls_of(unit, of_unit, evidence, law))
+    return replace(weighted, terms=terms, influence=influence_of(unit, of_unit, evidence, law))
 
 
 def _allowed_in_unit(

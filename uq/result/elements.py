@@ -30,8 +30,8 @@ from uq.sampling.designs import CURVES, DESIGNS, NOISE
 from uq.stats.dependent_rows import INDEPENDENT, Dependence, SharedInfluence
 from uq.stats.importance_weights import (
     ImportanceWeights,
-    carries_little,
     effective_rows,
+    is_negligible,
     tail_shape,
 )
 from uq.study.reading import study_of_result
@@ -283,5 +283,5 @@ def weights_of(rows: xr.Dataset) -> ImportanceWeights | None:
         return None
     of_samples = dependence_of(rows).sums_of_samples(weights)
     k, most = tail_shape(of_samples), largest_weight(rows)
-    k = min(k, 0.0) if carries_little(most, len(of_samples)) else k
+    k = min(k, 0.0) if is_negligible(most, len(of_samples)) else k
     return ImportanceWeights(weights, k, len(of_samples), effective_rows(of_samples), most)

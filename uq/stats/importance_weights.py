@@ -95,7 +95,7 @@ def smoothed(
     alone = len(of_samples) == 1 and log_weights.any()
     k = inf if alone else tail_shape(of_samples)
     weights = raw
-    if carries_little(most, len(of_samples)):
+    if is_negligible(most, len(of_samples)):
         k = min(k, 0.0)
     elif np.isfinite(k):
         smooth = _with_smooth_tail(of_samples)
@@ -111,17 +111,17 @@ def smoothed(
     return ImportanceWeights(weights / weights.mean(), k, len(of_samples), effective, most)
 
 
-def no_weights(rows: int, why: str) -> ImportanceWeights:
+def impossible_weights(rows: int, why: str) -> ImportanceWeights:
     """Return unit weights for rows that cannot be weighted, with the reason."""
     return ImportanceWeights(np.ones(rows), inf, rows, 0.0, impossible=why)
 
 
-def carries_little(most: float, rows: int) -> bool:
+def is_negligible(most: float, rows: int) -> bool:
     """Whether no row can carry more than a hundredth of the total weight."""
-    return rows_to_carry_little(most) <= rows
+    return rows_to_be_negligible(most) <= rows
 
 
-def rows_to_carry_little(most: float) -> float:
+def rows_to_be_negligible(most: float) -> float:
     """Return the sample size at which no row can exceed a hundredth of the total weight."""
     return most / _LITTLE
 

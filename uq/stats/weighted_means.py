@@ -16,8 +16,8 @@ from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import (
     HOPELESS,
-    carries_little,
     effective_rows,
+    is_negligible,
     largest_share,
     refusal,
     tail_shape,
@@ -44,11 +44,13 @@ FEW = 20
 """With fewer effective rows on either side, an interval is no narrower than a binomial one."""
 
 
-Hits = tuple[float, float]
-"""Sample size of a binomial interval that another interval must cover, and its weight (extent)."""
+BinomialSize = tuple[float, float]
+"""Sample size of a binomial interval that another interval must cover, and its extent."""
 
 
-def hits_behind(numbers: Floats, weights: Floats | None, dependence: Dependence) -> list[Hits]:
+def binomial_sizes(
+    numbers: Floats, weights: Floats | None, dependence: Dependence
+) -> list[BinomialSize]:
     """Return the binomial sample sizes that an interval must allow for, if few rows determine it.
 
     Parameters
@@ -83,12 +85,12 @@ def hits_behind(numbers: Floats, weights: Floats | None, dependence: Dependence)
     return hits
 
 
-def fewest_rows(hits: list[Hits]) -> float:
+def fewest_rows(hits: list[BinomialSize]) -> float:
     """Return the smallest binomial sample size; infinite if the list is empty."""
     return min((rows for rows, _ in hits), default=inf)
 
 
-def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> Ends:
+def widened(ends: Ends, hits: list[BinomialSize], of_hits: Callable[[float], Ends]) -> Ends:
     """Return an interval widened to the binomial intervals, in proportion to their extent.
 
     Parameters
@@ -138,7 +140,7 @@ def weighted_share(
     numbers: Floats,
     weights: Floats | None = None,
     dependence: Dependence = INDEPENDENT,
-    hits: list[Hits] | None = None,
+    hits: list[BinomialSize] | None = None,
     confidence: float = CONFIDENCE,
 ) -> Estimate:
     """Estimate a weighted mean of numbers between 0 and 1 [1]_.
@@ -150,7 +152,7 @@ def weighted_share(
     weights : ndarray, shape (n,), optional
     dependence : Dependence, optional
     hits : list of (rows, extent), optional
-        Binomial sample sizes that the interval must allow for; by default `hits_behind`.
+        Binomial sample sizes that the interval must allow for; by default `binomial_sizes`.
     confidence : float, optional
 
     Returns
@@ -182,7 +184,7 @@ def weighted_share(
     if 0 < mean < 1:
         outlier = outlier_shift(mean, part_means)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
-    hits = hits_behind(numbers, weights, dependence) if hits is None else hits
+    hits = binomial_sizes(numbers, weights, dependence) if hits is None else hits
     low, high = widened((low, high), hits, lambda rows: exact_interval(mean, rows, confidence))
     return Estimate(mean, float(low), float(high))
 
@@ -208,7 +210,7 @@ def share_to_compare(numbers: Floats, dependence: Dependence = INDEPENDENT) -> E
     part_means = weighted_part_means(numbers, np.ones(len(numbers)), dependence)
     if len(part_means) < 2:
         return Estimate(mean)
-    hits = hits_behind(numbers, None, dependence)
+    hits = binomial_sizes(numbers, None, dependence)
     low, high = widened(_of_logit(mean, part_means), hits, lambda rows: wilson_interval(mean, rows))
     return Estimate(mean, low, high)
 
@@ -317,7 +319,7 @@ def trusted(
         Reason to give if a larger sample would not help.
     """
     of_samples = dependence.sums_of_samples(np.abs(contributions))
-    if carries_little(most, len(of_samples)):
+    if is_negligible(most, len(of_samples)):
         return estimate
     why = refusal(tail_shape(of_samples), len(of_samples), hopeless)
     return Estimate(reason=why) if why else estimate

@@ -3,7 +3,7 @@
 from computed import study_of
 
 from uq.assess.integrated_inputs import elements_with_laws, why_not_integrated
-from uq.assess.population import Population
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.result.elements import dependence_of, independent_rows
 from uq.result.result import Result
 
@@ -30,7 +30,7 @@ def scaled_study(uncertain, design=None, samples=400, **tables):
 def populated(ds):
     rows = independent_rows(ds)
     element = next(elements_with_laws(Result(rows), ["life"]))
-    return Population(element, dependence_of(rows)), why_not_integrated(Result(rows), element)
+    return WeightedMixture(element, dependence_of(rows)), why_not_integrated(Result(rows), element)
 
 
 WHOLE = {"a": lognormal(0.5), "z": NORMAL}

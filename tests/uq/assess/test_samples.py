@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import uq
-from uq.assess.population import as_sample
+from uq.assess.weighted_mixture import as_sample
 from uq.contract import Output
 from uq.result.element import Element
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.importance_weights import smoothed
 
-CHOSEN_IN = {"sample.py", "counted_rows.py", "population.py"}
+CHOSEN_IN = {"sample.py", "counted_rows.py", "weighted_mixture.py"}
 ROWS = 240
 
 
@@ -86,7 +86,7 @@ def test_no_caller_tells_the_kinds_of_rows_apart():
         if path.name not in CHOSEN_IN
         for node in ast.walk(ast.parse(path.read_text()))
         if isinstance(node, ast.Name)
-        and node.id in ("CountedRows", "Population")
+        and node.id in ("CountedRows", "WeightedMixture")
         or isinstance(node, ast.Attribute)
         and node.attr == "is_plain"
     }

@@ -6,9 +6,9 @@ from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
 from uq.assess.integrated_inputs import elements_with_laws
-from uq.assess.population import Population
 from uq.assess.row_inputs import inputs_of
 from uq.assess.scale_laws import ConditionalScale, LearntScale
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.explore.updating import update
 from uq.learning.inspections import read_tables
 from uq.learning.integrated_input import dependent_outputs
@@ -138,4 +138,4 @@ def test_no_end_of_an_interval_lies_before_a_time_that_the_unit_outlived():
     unit = as_unit(update(rows, [told]), "A")
     (element,) = elements_with_laws(Result(unit), ["life"])
     assert element.law is None
-    assert Population(element).quantile(0.01).low >= SEEN
+    assert WeightedMixture(element).quantile(0.01).low >= SEEN

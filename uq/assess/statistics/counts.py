@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from uq.assess.population import as_sample
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind, placed
+from uq.assess.weighted_mixture import as_sample
 from uq.contract import Mask
 from uq.result.element import Element
 from uq.result.result import Result

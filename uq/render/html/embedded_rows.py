@@ -118,7 +118,9 @@ def rows_inside(
     elements = list(elements_with_laws(rows, outputs))
     columns = [input_column(rows, name, findings.result.input_unit(name)) for name in inputs]
     columns += [output_column(rows, element, analysis) for element in elements]
-    promises = {lead.name: lead.promise for lead in answered[:1] if lead.promise is not None}
+    tolerance_bounds = {
+        lead.name: lead.tolerance_bound for lead in answered[:1] if lead.tolerance_bound is not None
+    }
     drawn = first_element(elements, answered, analysis)
     first = list(inputs).index(first_input(independent_inputs(rows), elements[drawn], answered))
     return {
@@ -133,7 +135,7 @@ def rows_inside(
         "events": [*_thresholds(rows, elements, analysis), *_regimes(rows)],
         "colours": {"rows": ROWS, "limit": LIMIT},
         "first": [first, len(inputs) + drawn],
-        "tolerances": tolerances(rows, elements, promises),
+        "tolerances": tolerances(rows, elements, tolerance_bounds),
         "note": _note(elements),
         "quarters_note": QUARTERS,
     }

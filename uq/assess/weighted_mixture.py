@@ -1,4 +1,4 @@
-"""Sample of rows with weights or laws of lives: probabilities and quantiles of the mixture."""
+"""Sample of rows with weights or laws of lives: the weighted mixture of the laws of the rows."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -34,8 +34,8 @@ from uq.stats.intervals import (
 from uq.stats.roots import root
 from uq.stats.weighted_means import (
     EXACT,
+    binomial_sizes,
     fewest_rows,
-    hits_behind,
     trusted,
     weighted_part_means,
     weighted_share,
@@ -51,7 +51,7 @@ _CENSORED = "rows were censored before that time"
 
 
 @dataclass(frozen=True)
-class Population(Sample):
+class WeightedMixture(Sample):
     """Rows of an element with weights, or with the law of a life each: a weighted mixture.
 
     References
@@ -64,9 +64,9 @@ class Population(Sample):
     def by(self) -> dict[str, Functions]:
         """The functions that compute each estimate, by its name here."""
         return super().by | {
-            "probability_above": (Population.probability_above, Population),
-            "probability_below": (Population.probability_below, Population),
-            "quantile": (Population.quantile, Population),
+            "probability_above": (WeightedMixture.probability_above, WeightedMixture),
+            "probability_below": (WeightedMixture.probability_below, WeightedMixture),
+            "quantile": (WeightedMixture.quantile, WeightedMixture),
             "never_ending": (share_interval,) if self.weights is None else BY_WEIGHTS,
         }
 
@@ -161,7 +161,7 @@ class Population(Sample):
         """Return the estimator of a quantile, located anew in each study compared."""
 
         def rows(other: Element) -> SelectedRows:
-            at = Population(other).middle(probability)
+            at = WeightedMixture(other).middle(probability)
             return SelectedRows(other.present, other.below(at))
 
         return replace(share(rows), counts_hits=False)
@@ -222,7 +222,7 @@ class Population(Sample):
         """
         kept = self.element.present
         weights, dependence = self._weights(kept), self._dependence(kept, value)
-        hits = hits_behind(self.element.below(value, signed=True)[kept], weights, dependence)
+        hits = binomial_sizes(self.element.below(value, signed=True)[kept], weights, dependence)
 
         @cache  # both ends of an interval are sought from the same places
         def share(y: float) -> Estimate:
@@ -343,8 +343,8 @@ class Population(Sample):
         return Estimate(value, low, high, self._why_open(probability, low, high, rows))
 
 
-BY_WEIGHTS: Functions = (Population,)
-"""The functions that compute the estimates of a population from weights and laws of its rows."""
+BY_WEIGHTS: Functions = (WeightedMixture,)
+"""The functions that compute the estimates of a mixture from weights and laws of its rows."""
 
 
 def as_sample(
@@ -356,7 +356,7 @@ def as_sample(
     """Return the rows of an element as a sample, by the strategy that suits them.
 
     `CountedRows` where all rows are of equal weight and have the lives that were computed;
-    `Population` where rows have weights, or an input of a life is integrated exactly.
+    `WeightedMixture` where rows have weights, or an input of a life is integrated exactly.
 
     Parameters
     ----------
@@ -367,7 +367,7 @@ def as_sample(
     weights : ImportanceWeights, optional
         Of the rows with lives as computed.
     """
-    strategy = CountedRows if element.is_plain else Population
+    strategy = CountedRows if element.is_plain else WeightedMixture
     return strategy(element, dependence, confidence, weights)
 
 
