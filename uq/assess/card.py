@@ -24,7 +24,6 @@ from uq.assess.answer.wording import (
 )
 from uq.assess.card_numbers import Headline, headlines
 from uq.assess.findings import Findings
-from uq.assess.stopping import why_ended_in_brief
 from uq.assess.summary import REGIME
 from uq.contract import Status
 from uq.result.result import Result
@@ -165,7 +164,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
         no_causes,
-        tuple(_checks(result, answer, result.row_name[1], no_causes)),
+        tuple(_checks(findings, answer, no_causes)),
         tuple(_next(result, answer.advice)),
     )
 
@@ -230,16 +229,16 @@ def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator
         yield LeadingInput(contribution, effect, shown)
 
 
-def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iterator[str]:
-    enough, lead = answer.enough, answer.lead
+def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]:
+    result, enough, lead = findings.result, answer.enough, answer.lead
+    _, plural = result.row_name
     if answer.failed:
         share = percent(answer.failed / max(answer.rows, 1))
         codes = np.unique(result.dataset["status"].values[result.failed])
         kinds = ", ".join(Status(code).label for code in codes)
         yield f"{share} of the {plural} failed ({kinds}) and are left out"
-    design = result.study.design
-    if design.until is not None and not (result.has_weights or result.why_no_statistics):
-        yield why_ended_in_brief(design, result)
+    if findings.summary.why_ended:
+        yield findings.summary.why_ended
     if enough.unknown:
         yield f"sample size cannot be judged: {enough.unknown}"
     elif enough.question:

@@ -254,22 +254,12 @@ def _targets(result: Result, output: str) -> Iterator[IndexTarget]:
         yield from (lightened(number_of(element)) for element in elements)
 
 
-def why_ended_in_brief(design: "DesignTable", result: Result) -> str:
-    """State in a few words why a run with [design] until ended; see `why_ended`."""
-    assert design.until is not None
-    samples, seen = int(result.dataset.attrs["samples"]), _stop(design, result)[1]
-    wanted = _wanted(design.until.half_width, unit_of(seen.units, seen.estimate.value))
-    if seen.reached:
-        return f"ended at {grouped(samples)} of {grouped(design.samples)} samples: {wanted} reached"
-    return f"{grouped(samples)} samples spent: {wanted} not reached"
-
-
 HOPELESS = 4.0
 """So many times the budget is out of reach; a width is known to a factor of two."""
 
 
-def why_ended(design: "DesignTable", result: Result) -> str:
-    """State why a run ended, and the estimate at that point.
+def why_ended(design: "DesignTable", result: Result) -> tuple[str, str]:
+    """State why a run ended, in a few words, and with the estimate at that point.
 
     Parameters
     ----------
@@ -278,16 +268,28 @@ def why_ended(design: "DesignTable", result: Result) -> str:
     result : Result
         Its result.
     """
-    until, samples = design.until, int(result.dataset.attrs["samples"])
-    assert until is not None
-    size, seen = _stop(design, result)
-    estimate, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
+    assert design.until is not None
+    samples, (size, seen) = int(result.dataset.attrs["samples"]), _stop(design, result)
+    unit = unit_of(seen.units, seen.estimate.value)
+    wanted = _wanted(design.until.half_width, unit)
+    brief = f"{grouped(samples)} samples spent: {wanted} not reached"
+    if seen.reached:
+        brief = (
+            f"ended at {grouped(samples)} of {grouped(design.samples)} samples: {wanted} reached"
+        )
+    return brief, _estimate_at_end(design, samples, size, seen)
+
+
+def _estimate_at_end(design: "DesignTable", samples: int, size: int, seen: InterimEstimate) -> str:
+    """State the estimate at the end of a run, and whether it was the goal that ended it."""
+    assert design.until is not None
     if _has_none(seen):
         return f"the budget of {samples} samples is spent: {_without_interval(seen)}"
-    stated = f"{seen.what} {_in_words(estimate, unit)}"
+    unit = unit_of(seen.units, seen.estimate.value)
+    stated = f"{seen.what} {_in_words(seen.estimate, unit)}"
     if seen.lost:
         stated += f" (without {seen.lost})"
-    wanted = _wanted(until.half_width, unit)
+    wanted = _wanted(design.until.half_width, unit)
     if not seen.reached:
         needed = _needed(seen, samples)
         more = f": from the scatter of all rows, about {needed} samples are required" * bool(needed)

@@ -114,6 +114,8 @@ class Summary:
         The largest number of rows that lack an element because they failed.
     notes : list of str
         Sentences on missing estimates.
+    why_ended : str
+        Why a run with `until` ended, in a few words; "" for others.
     weights : ImportanceWeights, optional
         Of the rows, where inspections have weighted them.
     """
@@ -125,6 +127,7 @@ class Summary:
     outputs: Mapping[str, Described]
     most_failed: int
     notes: list[str]
+    why_ended: str = ""
     weights: ImportanceWeights | None = None
 
     @property
@@ -190,7 +193,7 @@ def summarise(
     analysis = analysis or result.analysis
     if fits:
         result.refuse_if_weighted("laws fitted to lives")
-    notes = _notes(result)
+    why_ended, notes = _notes(result)
     if regime is not None:
         result = result.within_regime(regime)
     rows = result.independent
@@ -215,6 +218,7 @@ def summarise(
         outputs=outputs,
         most_failed=most,
         notes=notes,
+        why_ended=why_ended,
         weights=of_all if weighting is None else None,
     )
 
@@ -312,19 +316,21 @@ def category_shares(
     }
 
 
-def _notes(result: Result) -> list[str]:
+def _notes(result: Result) -> tuple[str, list[str]]:
+    """Return why a run with `until` ended, in a few words, and sentences on missing estimates."""
     if why := result.why_no_statistics:
-        return [NO_STATISTICS.format(design=result.design_name, why=why)]
+        return "", [NO_STATISTICS.format(design=result.design_name, why=why)]
     design = result.study.design
-    notes = []
+    brief, notes = "", list[str]()
     if design.until is not None and not result.has_weights:
-        notes.append(why_ended(design, result))
+        brief, in_full = why_ended(design, result)
+        notes.append(in_full)
     if result.is_nested:
         place = result.nesting
         size = size_in_words(place.samples, place.units, place.repeats)
         notes.append(SEVERAL_ROWS.format(size=size))
     notes += filter(None, [result.dataset.attrs.get(ONLY_INSPECTED, ""), why_no_intervals(result)])
-    return notes + result.notes_on_places
+    return brief, notes + result.notes_on_places
 
 
 def why_no_intervals(result: Result) -> str:

@@ -163,7 +163,7 @@ def end_verb(element: Element) -> str:
 
 
 def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
-    """Return a bound on the wrong side of its quantile; NaN if there is none.
+    """Return a bound on the wrong side of its quantile, which is then stated instead; else NaN.
 
     It occurs by chance with few rows, where integrated lives estimate the quantile more precisely.
     """
