@@ -13,7 +13,7 @@ from uq.assess.chosen_targets import FEWEST_HITS, few_hits, targets_of
 from uq.assess.integrated_inputs import Scales, scales_by_level
 from uq.assess.nested_table import SOLVER, SOURCES, LevelShares, shares_of
 from uq.assess.statistics.counts import stated_error
-from uq.assess.targets import IndexTarget, lightened, split_name
+from uq.assess.targets import IndexTarget, split_name, transformed_if_heavy
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.indices.index import RefusedError
@@ -175,7 +175,7 @@ def by_level(result: Result, output: str | None = None, *, plain: bool = False) 
     shares = {}
     for name in shown if output is None else [output]:
         for target in targets_of(rows, name):
-            light = target if target.event else lightened(target, SHARES_OF)
+            light = target if target.event else transformed_if_heavy(target, SHARES_OF)
             scales = Scales({}) if plain else _scales(rows, light)
             shares[light.name] = _shares(rows, light, place, scales, replicate, weights)
     switches = "regime" in output_names and output is None

@@ -18,7 +18,7 @@ from uq.result.result import Result
 from uq.stats import intervals, two_samples
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import exact_interval
-from uq.stats.jumps import beyond_jumps
+from uq.stats.jumps import widened_for_jumps
 from uq.stats.weighted_means import share_to_compare
 from uq.study.file import Tied
 
@@ -28,7 +28,7 @@ WORST = -1.0
 """The correlation at which a difference is least certain."""
 
 
-class Kinship(Enum):
+class Pairing(Enum):
     """Relation between the rows of two results; the value is the sentence that reports it."""
 
     INDEPENDENT = "The seeds differ: the two samples are independent."
@@ -46,7 +46,7 @@ class Kinship(Enum):
     )
 
 
-def kinship(first: Result, second: Result) -> Kinship:
+def pairing(first: Result, second: Result) -> Pairing:
     """Return how the rows of two results are related.
 
     Parameters
@@ -56,27 +56,27 @@ def kinship(first: Result, second: Result) -> Kinship:
 
     Returns
     -------
-    Kinship
+    Pairing
     """
     both = (first, second)
     if any(result.has_weights for result in both):
-        return Kinship.WEIGHTED
+        return Pairing.WEIGHTED
     if any(result.design.imported for result in both):
-        return _kinship_of_imported(first, second)
+        return _pairing_of_imported(first, second)
     if first.dataset.attrs["seed"] != second.dataset.attrs["seed"]:
-        return Kinship.INDEPENDENT
+        return Pairing.INDEPENDENT
     independent = [result.has_independent_samples for result in both]
     if any(independent) and any(result.is_nested for result in both):
-        return Kinship.ROWS_SAME if _same_rows(first, second) else Kinship.UNKNOWN
+        return Pairing.ROWS_SAME if _same_rows(first, second) else Pairing.UNKNOWN
     if all(independent):
         same = _columns(first) == _columns(second)
-        return Kinship.ROWS if same else Kinship.UNKNOWN
+        return Pairing.ROWS if same else Pairing.UNKNOWN
     if (
         not any(independent)
         and first.dataset.attrs["replicates"] == second.dataset.attrs["replicates"]
     ):
-        return Kinship.REPLICATES
-    return Kinship.UNKNOWN
+        return Pairing.REPLICATES
+    return Pairing.UNKNOWN
 
 
 def _same_rows(first: Result, second: Result) -> bool:
@@ -86,13 +86,13 @@ def _same_rows(first: Result, second: Result) -> bool:
     return first.dataset.drop_attrs().equals(second.dataset.drop_attrs())
 
 
-def _kinship_of_imported(first: Result, second: Result) -> Kinship:
+def _pairing_of_imported(first: Result, second: Result) -> Pairing:
     """Return how two results are related if one is imported, so that seeds do not matter."""
     files = [result.study for result in (first, second)]
     same = files[0].data == files[1].data and files[0].design.method == files[1].design.method
     if same and all(result.has_independent_rows for result in (first, second)):
-        return Kinship.ROWS_IMPORTED
-    return Kinship.UNKNOWN_IMPORTED
+        return Pairing.ROWS_IMPORTED
+    return Pairing.UNKNOWN_IMPORTED
 
 
 def _columns(result: Result) -> int:
@@ -152,17 +152,17 @@ class Pair:
 
     def __init__(self, first: Result, second: Result) -> None:
         self.rows = (first.independent, second.independent)
-        self.kinship = kinship(first, second)
+        self.pairing = pairing(first, second)
         self._dependence = [rows.dependence for rows in self.rows]
-        rows = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
+        rows = self.pairing in (Pairing.ROWS, Pairing.ROWS_IMPORTED)
         self._shared = shared_rows(*self.rows) if rows else None
-        self._paired = rows or self.kinship in (Kinship.REPLICATES, Kinship.ROWS_SAME)
+        self._paired = rows or self.pairing in (Pairing.REPLICATES, Pairing.ROWS_SAME)
 
     def difference(
         self, estimator: Estimator, samples: list[SelectedRows], estimates: list[Estimate]
     ) -> Estimate:
         """Return an estimate from the second result less that from the first."""
-        if self.kinship is Kinship.REPLICATES and not estimator.is_share:
+        if self.pairing is Pairing.REPLICATES and not estimator.is_share:
             value = estimates[1].value - estimates[0].value
             by_replicate = [
                 self._by_replicate(estimator, i, rows) for i, rows in enumerate(samples)
@@ -175,8 +175,8 @@ class Pair:
             ):  # they differ only by rounding
                 return Estimate(value)
             ends = intervals.scatter_interval(value, apart)
-            return Estimate(value, *self._beyond_jumps(value, ends, estimator, samples))
-        if self.kinship is Kinship.WEIGHTED:
+            return Estimate(value, *self._widened_for_jumps(value, ends, estimator, samples))
+        if self.pairing is Pairing.WEIGHTED:
             return two_samples.difference(estimates[0], estimates[1], self.unpaired)
         if estimator.counts_hits and all(rows.is_none for rows in self._dependence):
             estimates = [_newcombe(sample) for sample in samples]
@@ -228,7 +228,7 @@ class Pair:
 
     def ratio(self, samples: list[SelectedRows], estimates: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
-        if self.kinship is Kinship.REPLICATES and all(estimate.value > 0 for estimate in estimates):
+        if self.pairing is Pairing.REPLICATES and all(estimate.value > 0 for estimate in estimates):
             by_replicate = [self._by_replicate(SD, i, sample) for i, sample in enumerate(samples)]
             return _factor(
                 estimates[1].value / estimates[0].value, by_replicate[1], by_replicate[0]
@@ -240,7 +240,7 @@ class Pair:
     @property
     def unpaired(self) -> float:
         """The correlation to assume where rows are not paired."""
-        return 0.0 if self.kinship is Kinship.INDEPENDENT else WORST
+        return 0.0 if self.pairing is Pairing.INDEPENDENT else WORST
 
     def _correlation(self, estimator: Estimator, samples: list[SelectedRows]) -> float:
         """Return the correlation of influences of paired rows, or of means in paired replicates.
@@ -249,7 +249,7 @@ class Pair:
         Student's t interval of the linearised differences between replicates, whose own quantiles
         are poor estimates.
         """
-        if self._shared is None and self.kinship is not Kinship.REPLICATES:
+        if self._shared is None and self.pairing is not Pairing.REPLICATES:
             return self.unpaired
         influences = [_influence(estimator, sample) for sample in samples]
         if self._shared is not None:
@@ -260,7 +260,7 @@ class Pair:
             return np.nan
         return float(np.asarray(np.corrcoef(means))[0, 1])
 
-    def _beyond_jumps(
+    def _widened_for_jumps(
         self, value: float, ends: intervals.Ends, estimator: Estimator, samples: list[SelectedRows]
     ) -> intervals.Ends:
         """Return the interval of a difference, with the error of jumps that replicates hide.
@@ -276,7 +276,7 @@ class Pair:
         ):
             influence, dependence = [influence[1] - influence[0]], dependence[:1]
         for of_rows, rows in zip(influence, dependence, strict=True):
-            ends = beyond_jumps(value, ends, of_rows, rows.neighbours, intervals.CONFIDENCE)
+            ends = widened_for_jumps(value, ends, of_rows, rows.neighbours, intervals.CONFIDENCE)
         return ends
 
     def _averaged(self, i: int, sample: SelectedRows) -> Estimate:

@@ -40,7 +40,7 @@ def with_value(element: Element) -> SelectedRows:
     return SelectedRows(element.present, np.where(element.censored, np.inf, element.values))
 
 
-def whole(element: Element) -> SelectedRows:
+def value_and_censoring(element: Element) -> SelectedRows:
     """Return value and censoring of each row."""
     return SelectedRows(element.present, np.column_stack([element.values, element.censored]))
 

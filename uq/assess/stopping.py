@@ -16,7 +16,7 @@ from uq.assess.chosen_targets import wholes
 from uq.assess.design_sample import sample_of
 from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.sensitivities import indices_of_target
-from uq.assess.targets import IndexTarget, lightened, number_of
+from uq.assess.targets import IndexTarget, number_of, transformed_if_heavy
 from uq.assess.weighted_mixture import as_sample
 from uq.indices.methods import METHODS, kinds_with_intervals
 from uq.result.element import Element
@@ -251,7 +251,7 @@ def _targets(result: Result, output: str) -> Iterator[IndexTarget]:
     if is_whole(output):
         yield next(wholes(elements))
     else:
-        yield from (lightened(number_of(element)) for element in elements)
+        yield from (transformed_if_heavy(number_of(element)) for element in elements)
 
 
 HOPELESS = 4.0

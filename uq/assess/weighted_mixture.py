@@ -18,7 +18,7 @@ from uq.assess.sample import (
     on_side,
     share,
 )
-from uq.assess.scale_laws import learnt_terms
+from uq.assess.scale_laws import posterior_terms
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.stats.dependent_rows import Dependence
@@ -36,7 +36,7 @@ from uq.stats.weighted_means import (
     EXACT,
     binomial_sizes,
     fewest_rows,
-    trusted,
+    if_reliable,
     weighted_part_means,
     weighted_share,
 )
@@ -192,7 +192,7 @@ class WeightedMixture(Sample):
         dependence, weights = self.dependence[kept], self._weights(kept)
         if dependence.shared is None or weights is None:
             return dependence
-        terms = learnt_terms(self.element.law, self.element.values, time)
+        terms = posterior_terms(self.element.law, self.element.values, time)
         if terms is None:
             return dependence
         of_row, times_below = (of_rows[kept] for of_rows in terms)
@@ -212,7 +212,7 @@ class WeightedMixture(Sample):
         weights = self.element.weights
         if weights is None or not kept.any():
             return estimate
-        return trusted(estimate, weights[kept], self.dependence[kept], self.element.most)
+        return if_reliable(estimate, weights[kept], self.dependence[kept], self.element.most)
 
     def _near(self, value: float) -> tuple[Callable[[float], Estimate], float]:
         """Return a function that estimates P(Y < y) among the rows that have a value.

@@ -200,12 +200,12 @@ def learnt_facts(summary: Learnt) -> Fact:
     members = quality | {
         "inspections": len(summary.inspections),
         "inputs": {
-            learnt_input.name: {
-                "units": learnt_input.units,
-                "prior": spread(learnt_input.prior),
-                "posterior": spread(learnt_input.posterior),
+            posterior_input.name: {
+                "units": posterior_input.units,
+                "prior": spread(posterior_input.prior),
+                "posterior": spread(posterior_input.posterior),
             }
-            for learnt_input in summary.inputs
+            for posterior_input in summary.inputs
         },
         "confounded": fact(
             [

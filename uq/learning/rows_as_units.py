@@ -97,7 +97,7 @@ class WeightedRows:
     scale : ndarray, shape (m,), or None
         Value of the integrated input in each row.
     scores : ndarray, shape (m, q), or None
-        Its law in each row of an inspected unit (`LearntScale`).
+        Its law in each row of an inspected unit (`PosteriorScale`).
     terms : ndarray, shape (m, terms), or None
         Terms of an input shared by all units, averaged over its law in each row.
     influence : ndarray, shape (m, terms), or None

@@ -32,7 +32,7 @@ def effective_rows(numbers: Floats) -> float:
 
 
 class ImportanceWeights(NamedTuple):
-    """ImportanceWeights importance weights of rows, with their diagnostics.
+    """Importance weights of rows, with their diagnostics.
 
     Attributes
     ----------

@@ -15,7 +15,7 @@ from scipy import special
 
 from uq.contract import Floats, Mask
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
-from uq.stats.jumps import beyond_jumps
+from uq.stats.jumps import widened_for_jumps
 from uq.stats.quantile_functions import normal, student
 
 CONFIDENCE = 0.95
@@ -158,7 +158,7 @@ def mean_interval(
     low, high : float
         Student's t interval [1]_ from the rows, or from the means of the replicates, which is
         widened for the error of jumps (`uq.stats.jumps`). For independent rows or samples the
-        interval is widened for two more outliers (`beyond_outliers`).
+        interval is widened for two more outliers (`widened_for_outliers`).
 
     References
     ----------
@@ -170,10 +170,10 @@ def mean_interval(
     ends = interval_of_mean(mean, values, dependence, confidence)
     if not dependence.has_independent_parts:
         return ends
-    return beyond_outliers(mean, ends, dependence.part_means(values))
+    return widened_for_outliers(mean, ends, dependence.part_means(values))
 
 
-def beyond_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) -> Ends:
+def widened_for_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) -> Ends:
     """Return an interval widened for further outliers as extreme as the most extreme estimate.
 
     Parameters
@@ -226,7 +226,7 @@ def interval_of_mean(
         return scatter_interval(value, values, confidence)
     values, unit = sized(values)  # squares of jumps neither overflow nor vanish
     ends = scatter_interval(value / unit, dependence.part_means(values), confidence)
-    low, high = beyond_jumps(value / unit, ends, values, dependence.neighbours, confidence)
+    low, high = widened_for_jumps(value / unit, ends, values, dependence.neighbours, confidence)
     return unit * low, unit * high
 
 

@@ -106,7 +106,7 @@ def _polynomials(scores: Floats) -> Floats:
     return np.column_stack(terms)
 
 
-def beyond_jumps(
+def widened_for_jumps(
     value: float,
     ends: tuple[float, float],
     values: Floats,

@@ -12,14 +12,14 @@ from uq.stats.intervals import (
     ONE_ROW,
     UNKNOWN,
     Ends,
-    beyond_outliers,
     is_constant,
     mean_interval,
     scatter_interval,
     sized,
     upper_probability,
+    widened_for_outliers,
 )
-from uq.stats.jumps import beyond_jumps
+from uq.stats.jumps import widened_for_jumps
 from uq.stats.quantile_functions import student
 from uq.stats.tails import Tail, heavier_tail
 
@@ -63,7 +63,9 @@ def corrected_mean_interval(
     values, size = sized(values)  # squares neither overflow nor vanish
     means = dependence.part_means(values)
     ends = hall_interval(means, confidence)
-    low, high = beyond_jumps(float(means.mean()), ends, values, dependence.neighbours, confidence)
+    low, high = widened_for_jumps(
+        float(means.mean()), ends, values, dependence.neighbours, confidence
+    )
     away = values - values.mean()
     moved = float(away[np.abs(away).argmax()]) / len(values)
     return size * (low + min(moved, 0.0)), size * (high + max(moved, 0.0))
@@ -218,7 +220,7 @@ def sd_interval(
         Independent rows, or samples of several rows: Student's t interval of the squared deviations
         from the mean [1]_. It gives the relative error of the variance, to which the error of the
         mean is added, and is applied to the logarithm. It is widened for further outliers
-        (`uq.stats.intervals.beyond_outliers`), since samples that lack them underestimate the
+        (`uq.stats.intervals.widened_for_outliers`), since samples that lack them underestimate the
         scatter. Replicates: Student's t interval of the logarithms of their variances, widened for
         undetected jumps (`uq.stats.jumps`). The upper end is raised by the effect of one more row
         as extreme as the most extreme.
@@ -243,7 +245,9 @@ def sd_interval(
         high += mean_squares.max() / max(len(mean_squares), dependence.samples)
     elif (mean_squares > 0).all():
         low, high = np.exp(scatter_interval(logarithm, np.log(mean_squares), confidence))
-        low, high = beyond_jumps(variance, (low, high), squares, dependence.neighbours, confidence)
+        low, high = widened_for_jumps(
+            variance, (low, high), squares, dependence.neighbours, confidence
+        )
         low, high = max(low, 0.0), high + squares.max() / n
     else:
         return UNKNOWN
@@ -258,7 +262,7 @@ def _relative_ends(squares: Floats, confidence: float) -> Ends:
     wide = student(upper_probability(confidence), n - 1)
     # The error of the mean, t s / sqrt(n), matters only if nearly all squares are equal.
     half = np.hypot(wide * squares.std(ddof=1) / n**0.5, wide**2 / n)
-    ends = beyond_outliers(0.0, (-half, half), squares - squares.mean(), OUTLYING_SQUARES)
+    ends = widened_for_outliers(0.0, (-half, half), squares - squares.mean(), OUTLYING_SQUARES)
     return float(np.exp(ends[0])), float(np.exp(ends[1]))
 
 

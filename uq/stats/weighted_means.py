@@ -28,16 +28,16 @@ from uq.stats.intervals import (
     ONE_ROW,
     ROUNDING,
     Ends,
-    beyond_outliers,
     exact_interval,
     is_constant,
     outlier_shift,
     scatter_interval,
     sized,
     upper_probability,
+    widened_for_outliers,
     wilson_interval,
 )
-from uq.stats.jumps import beyond_jumps
+from uq.stats.jumps import widened_for_jumps
 from uq.stats.quantile_functions import student
 
 FEW = 20
@@ -90,7 +90,9 @@ def fewest_rows(hits: list[BinomialSize]) -> float:
     return min((rows for rows, _ in hits), default=inf)
 
 
-def widened(ends: Ends, hits: list[BinomialSize], of_hits: Callable[[float], Ends]) -> Ends:
+def widened_to_binomial(
+    ends: Ends, hits: list[BinomialSize], of_hits: Callable[[float], Ends]
+) -> Ends:
     """Return an interval widened to the binomial intervals, in proportion to their extent.
 
     Parameters
@@ -185,7 +187,9 @@ def weighted_share(
         outlier = outlier_shift(mean, part_means)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
     hits = binomial_sizes(numbers, weights, dependence) if hits is None else hits
-    low, high = widened((low, high), hits, lambda rows: exact_interval(mean, rows, confidence))
+    low, high = widened_to_binomial(
+        (low, high), hits, lambda rows: exact_interval(mean, rows, confidence)
+    )
     return Estimate(mean, float(low), float(high))
 
 
@@ -211,7 +215,9 @@ def share_to_compare(numbers: Floats, dependence: Dependence = INDEPENDENT) -> E
     if len(part_means) < 2:
         return Estimate(mean)
     hits = binomial_sizes(numbers, None, dependence)
-    low, high = widened(_of_logit(mean, part_means), hits, lambda rows: wilson_interval(mean, rows))
+    low, high = widened_to_binomial(
+        _of_logit(mean, part_means), hits, lambda rows: wilson_interval(mean, rows)
+    )
     return Estimate(mean, low, high)
 
 
@@ -266,14 +272,14 @@ def moments_of_rows(
     influence = _influence(values, weights)
     part_means = weighted_part_means(values, weights, dependence)
     parts = mean + influence if of_rows else part_means
-    ends = beyond_outliers(mean, scatter_interval(mean, part_means), parts)
-    ends = beyond_jumps(mean, ends, influence, dependence.neighbours, CONFIDENCE)
+    ends = widened_for_outliers(mean, scatter_interval(mean, part_means), parts)
+    ends = widened_for_jumps(mean, ends, influence, dependence.neighbours, CONFIDENCE)
     of_mean = Estimate(unit * mean, unit * ends[0], unit * ends[1])
     size = max(variance, 1e-300)
     relative = weighted_part_means(squares, weights, dependence) / size
     rows = _influence(squares, weights) / size
     parts = 1.0 + rows if of_rows else relative
-    away = np.asarray(beyond_outliers(1.0, scatter_interval(1.0, relative), parts)) - 1.0
+    away = np.asarray(widened_for_outliers(1.0, scatter_interval(1.0, relative), parts)) - 1.0
     sd = unit * variance**0.5
     return of_mean, Estimate(sd, *(sd * np.exp(away / 2)).tolist())
 
@@ -295,10 +301,10 @@ def weighted_moments(
     of_samples = dependence.sums_of_samples(weights)
     differ = tail_shape(of_samples) > -inf
     why = too_large(largest_share(of_samples), len(of_samples)) if differ else ""
-    return trusted(mean, weights * values, dependence), Estimate(reason=why) if why else sd
+    return if_reliable(mean, weights * values, dependence), Estimate(reason=why) if why else sd
 
 
-def trusted(
+def if_reliable(
     estimate: Estimate,
     contributions: Floats,
     dependence: Dependence,

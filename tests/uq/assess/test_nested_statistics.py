@@ -6,7 +6,7 @@ from computed import asking, compared, computed, linear, summarised, with_output
 from nested_studies import nested, nested_result
 
 import uq as api
-from uq.assess.pairing import Kinship, kinship
+from uq.assess.pairing import Pairing, pairing
 from uq.assess.sampled_laws import drawn_inputs, laws_and_values
 from uq.assess.sensitivities import ONE_ROW, sensitivities
 from uq.assess.statistics.moments import between_share
@@ -147,12 +147,12 @@ def test_curves_of_equal_rows_are_as_wide_as_those_of_samples():
 
 def test_studies_with_one_seed_are_not_paired_row_by_row():
     ds, other = nested_result(), nested_result(seed=6)
-    assert kinship(Result(ds), Result(other)) is Kinship.INDEPENDENT
-    assert kinship(Result(ds), Result(ds)) is Kinship.ROWS_SAME
-    assert kinship(Result(ds), Result(nested_result(samples=32))) is Kinship.UNKNOWN
-    assert kinship(Result(ds), Result(linear(seed=5))) is Kinship.UNKNOWN
+    assert pairing(Result(ds), Result(other)) is Pairing.INDEPENDENT
+    assert pairing(Result(ds), Result(ds)) is Pairing.ROWS_SAME
+    assert pairing(Result(ds), Result(nested_result(samples=32))) is Pairing.UNKNOWN
+    assert pairing(Result(ds), Result(linear(seed=5))) is Pairing.UNKNOWN
     even = nested_result(method="sobol", replicates=4)
-    assert kinship(Result(even), Result(even)) is Kinship.REPLICATES
+    assert pairing(Result(even), Result(even)) is Pairing.REPLICATES
     difference = compared(ds, other)["outputs"]["y"]["mean"]["difference"]
     assert difference["low"] < 0 < difference["high"]
 
