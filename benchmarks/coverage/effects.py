@@ -5,6 +5,7 @@ from scipy import special
 
 from benchmarks.coverage.tally import Tally
 from uq.assess.effects import effects
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 
 ROWS = 400
 SIGMAS = {"x": 0.3, "z": 0.1, "idle": 0.2}
@@ -34,18 +35,18 @@ def average(repetitions):
     for seed in range(repetitions):
         rng = np.random.default_rng(seed)
         normal = rng.normal(size=(ROWS, len(SIGMAS)))
-        _count(alone, truth, normal, None, rng)
-        replicate = np.repeat(np.arange(REPLICATES), ROWS // REPLICATES)
+        _count(alone, truth, normal, INDEPENDENT, rng)
+        replicates = Dependence(np.repeat(np.arange(REPLICATES), ROWS // REPLICATES))
         stratified = [_latin(ROWS // REPLICATES, rng) for _ in range(REPLICATES)]
-        _count(replicated, truth, np.concatenate(stratified), replicate, rng)
+        _count(replicated, truth, np.concatenate(stratified), replicates, rng)
     return [*alone.lines(), *replicated.lines()]
 
 
-def _count(tally, truth, normal, replicate, rng):
+def _count(tally, truth, normal, dependence, rng):
     logs = dict(zip(SIGMAS, (normal * [*SIGMAS.values()]).T, strict=True))
     noise = 0.2 * np.exp(2 * logs["x"]) * rng.normal(size=len(normal))
     y = -2 * logs["x"] + CURVED * logs["x"] ** 2 + logs["z"] + noise
-    fitted = effects(y, {name: np.exp(values) for name, values in logs.items()}, replicate)
+    fitted = effects(y, {name: np.exp(values) for name, values in logs.items()}, dependence)
     for name, slope in truth.items():
         tally.estimate(f"slope of {name}", slope, fitted[name].slope)
 

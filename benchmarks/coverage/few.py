@@ -16,6 +16,7 @@ from uq.assess.two_fidelities import with_twin
 from uq.indices.index import RefusedError
 from uq.indices.methods import METHODS
 from uq.result.result import Result
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import NOTHING
 from uq.stats.intervals import share_interval
 
@@ -29,15 +30,15 @@ ROWS = 1024
 def shares(repetitions):
     """Count the intervals of shares of few hits, and their lower ends alone."""
     lines = []
-    for how, replicate in (
-        (f"{ROWS} independent rows", None),
-        (f"8 replicates of {ROWS // 8} independent rows", np.arange(ROWS) % 8),
+    for how, dependence in (
+        (f"{ROWS} independent rows", INDEPENDENT),
+        (f"8 replicates of {ROWS // 8} independent rows", Dependence(np.arange(ROWS) % 8)),
     ):
         tally = Tally(f"a share of few hits, {how}", REASONS)
         for expected in EXPECTED:
             share, rng = expected / ROWS, np.random.default_rng(int(10 * expected))
             for _ in range(repetitions):
-                low, high = share_interval(rng.random(ROWS) < share, replicate)
+                low, high = share_interval(rng.random(ROWS) < share, dependence)
                 tally.add(f"{expected:g} hits expected", share, low, high)
                 tally.add(f"{expected:g} hits expected, lower end", share, low, np.inf)
         lines += tally.lines()

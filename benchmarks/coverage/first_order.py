@@ -10,6 +10,7 @@ from uq.indices.index import S1, RefusedError
 from uq.indices.measures import first_order
 from uq.indices.method import DesignSample
 from uq.indices.methods import METHODS
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.intervals import scatter_interval
 
 ROWS = (100, 300, 1000, 4000)
@@ -155,9 +156,9 @@ def rows(n, repetitions):
     return lines
 
 
-def _count(tally, x, y, shares, replicate=None):
+def _count(tally, x, y, shares, dependence=INDEPENDENT):
     inputs = {str(i): x[:, i] for i in range(x.shape[1])}
-    sample = DesignSample.plain(y, inputs, replicate=replicate, nulls=False)
+    sample = DesignSample.plain(y, inputs, dependence=dependence, nulls=False)
     indices = METHODS["first-order"].indices(sample)
     for i, share in enumerate(shares[:COUNTED]):
         index = indices.values[S1][str(i)]
@@ -182,7 +183,7 @@ def replicates(repetitions):
                 u = np.concatenate([draw(d, 8 * seed + k) for k in range(8)])
                 u = np.clip(u, 1e-12, 1 - 1e-12)
                 try:
-                    _count(tally, u, output(u), shares, np.repeat(np.arange(8), 64))
+                    _count(tally, u, output(u), shares, Dependence(np.repeat(np.arange(8), 64)))
                 except RefusedError:
                     continue
             lines += tally.lines()

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from benchmarks.coverage.tally import Tally
-from uq.stats.jumps import EvenReplicates
+from uq.stats.dependent_rows import Dependence
 from uq.stats.moments import moments
 
 PLACE, OTHER = 19.1 / 64, 0.7034
@@ -47,7 +47,7 @@ def means(repetitions):
         for seed in range(repetitions):
             rng = np.random.default_rng(seed)
             x = np.concatenate([DRAWN[method](3, rng=rng).random(rows) for _ in range(REPLICATES)])
-            part = EvenReplicates(replicate, x)
+            part = Dependence(replicate, x)
             for name, (function, truth) in FUNCTIONS.items():
                 tallies[name].estimate("mean", truth, moments(function(x), part).mean)
         lines += [line for tally in tallies.values() for line in tally.lines()]

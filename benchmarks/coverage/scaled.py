@@ -6,9 +6,9 @@ import numpy as np
 from scipy import special, stats
 
 from benchmarks.coverage.tally import Tally
-from uq.assess.population import Population
 from uq.assess.row_inputs import EVERYWHERE
 from uq.assess.scale_laws import IndependentScale
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.contract import Output
 from uq.result.element import Element
 from uq.sampling.laws import law_of
@@ -58,14 +58,14 @@ def scaled(repetitions):
             rng = np.random.default_rng(rows)
             for _ in range(repetitions):
                 rest = spread * rng.standard_normal(rows)
-                population = Population(element(rest, rng.standard_normal(rows), term), None)
+                weighted_mixture = WeightedMixture(element(rest, rng.standard_normal(rows), term))
                 for p in PROBABILITIES:
                     time = np.exp(np.hypot(1.0, spread) * stats.norm.ppf(p))
-                    below = population.below(time)
+                    below = weighted_mixture.below(time)
                     tally.add(f"P(T < t) = {p:g}", p, below.low, below.high)
                 for p in (0.01, 0.1, 0.5):
                     time = np.exp(np.hypot(1.0, spread) * stats.norm.ppf(p))
-                    quantile = population.quantile(p)
+                    quantile = weighted_mixture.quantile(p)
                     tally.add(f"B{100 * p:g}", time, quantile.low, quantile.high)
             lines += tally.lines()
     return lines
@@ -93,7 +93,7 @@ def _what_if(integrated, new, rows, repetitions):
         fresh = element(other, integrated * rng.standard_normal(rows), term)
         for p in (0.01, 0.05, 0.5, 0.95, 0.99):
             time = np.exp(mean + np.hypot(sd, integrated) * special.ndtri(p))
-            alone = Population(weighted, None).below(time)
+            alone = WeightedMixture(weighted).below(time)
             tally.estimate(f"P(T < t) = {p:g}", p, alone)
             apart = difference(alone, share_to_compare(fresh.below(time)), 0.0)
             tally.estimate(f"difference from a fresh run, P(T < t) = {p:g}", 0.0, apart)

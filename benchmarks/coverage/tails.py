@@ -4,7 +4,7 @@ import numpy as np
 from scipy import stats
 
 from benchmarks.coverage.tally import Tally
-from uq.stats.jumps import EvenReplicates
+from uq.stats.dependent_rows import Dependence
 from uq.stats.moments import moments
 
 PARETO = {1.5: "Pareto, index 1.5: no variance", 0.8: "Pareto, index 0.8: no mean"}
@@ -69,7 +69,7 @@ def _moments_of(law, rows, repetitions, replicates=1):
             continue
         share = (np.arange(rows) + share) / rows  # a row in each slice of each replicate
         values, inputs = law.ppf(share).ravel(), share.reshape(-1, 1)
-        yield moments(values, EvenReplicates(replicate, inputs))
+        yield moments(values, Dependence(replicate, inputs))
 
 
 def _count(tally, quantity, truth, interval, refused):

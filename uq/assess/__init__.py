@@ -18,7 +18,7 @@ Reading order; each part imports only those above it:
     pairing                pair the rows of two results, and correlate their estimates
     targets                targets of sensitivity indices
     integrated_inputs      choose the inputs to integrate exactly, which only scale lives
-    population             sample of rows with weights or laws of lives
+    weighted_mixture       sample of rows with weights or laws of lives
     chosen_targets         targets that a user names, or that suit a method
     expected_widths        the expected width of the intervals of a study
     reweighting            weights that turn the rows of a result into those of another study

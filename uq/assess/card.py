@@ -24,7 +24,6 @@ from uq.assess.answer.wording import (
 )
 from uq.assess.card_numbers import Headline, headlines
 from uq.assess.findings import Findings
-from uq.assess.stopping import why_ended_in_brief
 from uq.assess.summary import REGIME
 from uq.contract import Status
 from uq.result.result import Result
@@ -38,7 +37,7 @@ STUDY = "study"
 """Begins the advice on the number of rows."""
 
 
-class Cause(NamedTuple):
+class LeadingInput(NamedTuple):
     """Inputs that contribute alike to the scatter of the subject of a study.
 
     Attributes
@@ -85,7 +84,7 @@ class Card:
         Assumed inputs to which every life is proportional.
     assumptions : str
         How many laws are assumed, and which of the causes; "" for none.
-    causes : tuple of Cause
+    causes : tuple of LeadingInput
     index : str
         Key of the index of the causes: ``S1``.
     share_of : str
@@ -110,7 +109,7 @@ class Card:
     headline: tuple[Headline, ...] = ()
     assumed: tuple[str, ...] = ()
     assumptions: str = ""
-    causes: tuple[Cause, ...] = ()
+    causes: tuple[LeadingInput, ...] = ()
     index: str = ""
     share_of: str = ""
     indices_first: bool = False
@@ -167,7 +166,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
         no_causes,
-        tuple(_checks(result, answer, result.row_name[1], no_causes)),
+        tuple(_checks(findings, answer, no_causes)),
         tuple(_next(result, answer.advice)),
     )
 
@@ -188,7 +187,7 @@ def _share_of(ranking: Ranking, is_life: bool) -> str:
     return "variance"
 
 
-def _assumptions(result: Result, causes: Sequence[Cause]) -> str:
+def _assumptions(result: Result, causes: Sequence[LeadingInput]) -> str:
     laws = [name for name in result.study.uncertain if name in result.dataset.variables]
     assumed = [name for name in laws if mark_of(result, name) == ASSUMED]
     if not assumed:
@@ -207,7 +206,7 @@ def _ranking(answer: Answer) -> Ranking | None:
     return None if answer.lead is None else answer.lead.ranking
 
 
-def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator[Cause]:
+def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator[LeadingInput]:
     """Yield the leading causes, each with the same number under half its scatter."""
     if ranking is None or ranking.leader is None:
         return
@@ -229,19 +228,19 @@ def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator
                 ),
                 None,
             )
-        yield Cause(contribution, effect, shown)
+        yield LeadingInput(contribution, effect, shown)
 
 
-def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iterator[str]:
-    enough, lead = answer.enough, answer.lead
+def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]:
+    result, enough, lead = findings.result, answer.enough, answer.lead
+    _, plural = result.row_name
     if answer.failed:
         share = percent(answer.failed / max(answer.rows, 1))
         codes = np.unique(result.dataset["status"].values[result.failed])
         kinds = ", ".join(Status(code).label for code in codes)
         yield f"{share} of the {plural} failed ({kinds}) and are left out"
-    design = result.study.design
-    if design.until is not None and not (result.has_weights or result.why_no_statistics):
-        yield why_ended_in_brief(design, result)
+    if findings.summary.why_ended:
+        yield findings.summary.why_ended
     if enough.unknown:
         yield f"sample size cannot be judged: {enough.unknown}"
     elif enough.question:
@@ -260,13 +259,16 @@ def _checks(result: Result, answer: Answer, plural: str, no_causes: str) -> Iter
 
 def _moved(lead: Quantity | None, error: Any) -> str:
     """Return the bound if every value were wrong by its stated error; "" if that is the same."""
-    promise = None if lead is None else lead.promise
-    if promise is None:
+    tolerance_bound = None if lead is None else lead.tolerance_bound
+    if tolerance_bound is None:
         return ""
-    for name, bound, towards in (("lower", promise.lower, -inf), ("upper", promise.upper, inf)):
+    for name, bound, towards in (
+        ("lower", tolerance_bound.lower, -inf),
+        ("upper", tolerance_bound.upper, inf),
+    ):
         if isfinite(bound) and error[name] is not None:
-            moved = promise.unit.text(error[name], towards)
-            return f" (bound then {moved})" * (moved != promise.unit.text(bound, towards))
+            moved = tolerance_bound.unit.text(error[name], towards)
+            return f" (bound then {moved})" * (moved != tolerance_bound.unit.text(bound, towards))
     return ""
 
 

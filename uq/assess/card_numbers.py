@@ -89,29 +89,31 @@ def _of_event(quantity: Quantity, event: Event) -> Headline:
 
 def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
     """Yield the tolerance bounds, or the quantiles where there is none."""
-    promise = quantity.promise
-    if promise is None:
+    tolerance_bound = quantity.tolerance_bound
+    if tolerance_bound is None:
         return
     unit = findings.result.outputs[quantity.output].unit
 
     def key(name: str) -> str:
         return key_of("quantities", quantity.name, "promise", name, verb="answer")
 
-    covered, confidence = 100 * promise.coverage, 100 * promise.confidence
+    covered, confidence = 100 * tolerance_bound.coverage, 100 * tolerance_bound.confidence
     ends_well = bool(findings.result.outputs[quantity.output].success)
     name = f"{covered:g}/{confidence:g} {'life' if quantity.is_life and not ends_well else 'bound'}"
-    bounds = {"lower": (promise.lower, -inf), "upper": (promise.upper, inf)}
-    both = isfinite(promise.lower) and isfinite(promise.upper)
+    bounds = {"lower": (tolerance_bound.lower, -inf), "upper": (tolerance_bound.upper, inf)}
+    both = isfinite(tolerance_bound.lower) and isfinite(tolerance_bound.upper)
     for side, (bound, towards) in bounds.items():
         if isfinite(bound):
             label = name.replace(" ", f" {side} ") if both else name
-            does = _does(promise, side)
+            does = _does(tolerance_bound, side)
             note = f"{covered:g} % {does}; {confidence:g} % confidence (sampling)"
             estimate, leads = Estimate(bound), quantity.is_life or not quantity.events
-            yield Headline(key(side), label, estimate, unit, promise.unit, towards, note, leads)
-    if isfinite(promise.lower) or isfinite(promise.upper):
+            yield Headline(
+                key(side), label, estimate, unit, tolerance_bound.unit, towards, note, leads
+            )
+    if isfinite(tolerance_bound.lower) or isfinite(tolerance_bound.upper):
         return
-    quantiles = zip(promise.probabilities, promise.quantiles, bounds, strict=True)
+    quantiles = zip(tolerance_bound.probabilities, tolerance_bound.quantiles, bounds, strict=True)
     for p, estimate, side in quantiles:
         if isfinite(estimate.value):
             yield Headline(
@@ -119,17 +121,17 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
                 f"{100 * p:g} % quantile",
                 estimate,
                 unit,
-                promise.unit,
+                tolerance_bound.unit,
                 leads=quantity.is_life or not quantity.events,
             )
 
 
-def _does(promise: ToleranceBound, side: str) -> str:
+def _does(tolerance_bound: ToleranceBound, side: str) -> str:
     """Return what values do that are on the right side of a bound."""
-    if promise.of_magnitude:
+    if tolerance_bound.of_magnitude:
         return "within it"
-    if promise.is_life:
-        return f"{promise.ends} by then" if side == "upper" else "outlast it"
+    if tolerance_bound.is_life:
+        return f"{tolerance_bound.ends} by then" if side == "upper" else "outlast it"
     return "below it" if side == "upper" else "exceed it"
 
 

@@ -12,11 +12,11 @@ from uq.assess.targets import (
     IndexTarget,
     canonical,
     category_targets,
-    lightened,
     number_of,
     split_name,
     threshold_text,
     transformed,
+    transformed_if_heavy,
     with_tail_note,
 )
 from uq.errors import InputError, choices, nearest
@@ -74,7 +74,7 @@ _HEAVY = "some elements have a heavy tail"
 
 def _common(elements: Sequence[Element]) -> str:
     """Return the form that serves all elements."""
-    forms = {split_name(lightened(number_of(element)).name)[0] for element in elements}
+    forms = {split_name(transformed_if_heavy(number_of(element)).name)[0] for element in elements}
     if len(forms) == 1:
         return forms.pop()
     no_logarithm = any(transformed(element, "log").refused for element in elements)
@@ -193,7 +193,7 @@ def chosen(
         for name in result.shown_outputs(result.analysis):
             for target in targets_of(result, name):
                 if _suits(asked, target):
-                    yield target if asked.scale_free else lightened(target)
+                    yield target if asked.scale_free else transformed_if_heavy(target)
                     has_suitable = True
             if asked.aggregates:
                 yield from wholes(_elements(result, name))

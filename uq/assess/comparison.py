@@ -10,7 +10,7 @@ import pandas as pd
 from uq.assess.input_changes import ChangedEntry, OnlyChange, changes, only_change
 from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.pairing import Pair
-from uq.assess.sample import SelectedRows, in_categories, whole
+from uq.assess.sample import SelectedRows, in_categories, value_and_censoring
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.summary import REGIME, Shares, Summary, summarise
 from uq.contract import Output
@@ -115,7 +115,7 @@ def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> 
     estimator = both[0].estimator
     samples = [] if estimator is None else [estimator.sample(element) for element in elements]
     present = [sample for sample in samples if sample is not None]
-    are_equal = pair.are_equal([whole(element) for element in elements])
+    are_equal = pair.are_equal([value_and_censoring(element) for element in elements])
     return _compared(pair, [statistic.best for statistic in both], present, are_equal)
 
 
@@ -247,7 +247,7 @@ def comparison(first: Result, second: Result) -> Comparison:
         second=Side(str(second.dataset.attrs["title"]), summaries[1]),
         changed=changed,
         only=only_change(first, second, changed),
-        pairing=pair.kinship.name.lower().partition("_")[0],
+        pairing=pair.pairing.name.lower().partition("_")[0],
         shares=compared_shares(pair, summaries),
         outputs={
             name: compared_output(pair, [by_name[name] for by_name in elements], summaries)
@@ -306,7 +306,7 @@ def _asked(analyses: list[AnalysisTable], outputs: list[str]) -> AnalysisTable:
 def _notes(
     pair: Pair, summaries: list[Summary], elements: list[dict[str, Element]]
 ) -> Iterator[str]:
-    yield pair.kinship.value
+    yield pair.pairing.value
     for which, summary in zip("AB", summaries, strict=True):
         yield from (f"{which}: {note}" for note in summary.notes)
     if any(summary.most_failed for summary in summaries):

@@ -13,7 +13,7 @@ from uq.assess.chosen_targets import FEWEST_HITS, few_hits, targets_of
 from uq.assess.integrated_inputs import Scales, scales_by_level
 from uq.assess.nested_table import SOLVER, SOURCES, LevelShares, shares_of
 from uq.assess.statistics.counts import stated_error
-from uq.assess.targets import IndexTarget, lightened, split_name
+from uq.assess.targets import IndexTarget, split_name, transformed_if_heavy
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.indices.index import RefusedError
@@ -22,10 +22,16 @@ from uq.result.result import AnyResult, Result
 from uq.result.variables import is_error
 from uq.sampling.designs import several
 from uq.sampling.levels import CHANCE, OWN
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import Smoothed, largest_share, of_samples, quality, too_large
-from uq.stats.intervals import by_replicate, scattered_share_interval
+from uq.stats.importance_weights import (
+    ImportanceWeights,
+    largest_share,
+    of_samples,
+    quality,
+    too_large,
+)
+from uq.stats.intervals import scattered_share_interval
 from uq.stats.tails import lacks_variance
 from uq.stats.weighted_means import weighted_share
 
@@ -64,16 +70,16 @@ def switching(
     defined = np.isfinite(elsewhere)
     if not defined.any():
         return Estimate(reason=ONE_REPEAT.format(several("repeats", rows.design_name))), elsewhere
-    value, clusters = float(elsewhere[defined].mean()), rows.replicates
-    if not isinstance(clusters, Clusters):
-        clusters = Clusters(place.sample, place.samples)
+    value, dependence = float(elsewhere[defined].mean()), rows.dependence
+    if dependence.samples is None:
+        dependence = Dependence(place.sample, samples=place.samples, are_samples=True)
     if weights is not None:
         return weighted_share(
-            elsewhere[defined], weights[place.sample[defined]], clusters[defined]
+            elsewhere[defined], weights[place.sample[defined]], dependence[defined]
         ), elsewhere
-    means = by_replicate(elsewhere[defined], clusters[defined])
+    means = dependence[defined].part_means(elsewhere[defined])
     low, high = scattered_share_interval(
-        value, means, rows=int(defined.sum()), samples=clusters.samples
+        value, means, rows=int(defined.sum()), samples=dependence.samples
     )
     return Estimate(value, float(low), float(high)), elsewhere
 
@@ -112,7 +118,7 @@ class ByLevel:
         Probability that a repeat ends in another regime; None without regimes.
     switching : ndarray, shape (n,)
         The same probability for each row; NaN if unknown.
-    weights : Smoothed or None
+    weights : ImportanceWeights or None
         Of samples, where inspections have weighted them.
     """
 
@@ -123,7 +129,7 @@ class ByLevel:
     outputs: Mapping[str, LevelShares]
     another_regime: Estimate | None
     switching: Floats
-    weights: Smoothed | None = None
+    weights: ImportanceWeights | None = None
 
     @property
     def size(self) -> str:
@@ -169,7 +175,7 @@ def by_level(result: Result, output: str | None = None, *, plain: bool = False) 
     shares = {}
     for name in shown if output is None else [output]:
         for target in targets_of(rows, name):
-            light = target if target.event else lightened(target, SHARES_OF)
+            light = target if target.event else transformed_if_heavy(target, SHARES_OF)
             scales = Scales({}) if plain else _scales(rows, light)
             shares[light.name] = _shares(rows, light, place, scales, replicate, weights)
     switches = "regime" in output_names and output is None
@@ -199,7 +205,7 @@ def _shares(
     place: Nesting,
     scales: Scales,
     replicate: Any,
-    weights: Smoothed | None,
+    weights: ImportanceWeights | None,
 ) -> LevelShares:
     reason = target.refused or _why_not_weighted(weights)
     values = scales.mean_logarithms(target.values)
@@ -223,7 +229,7 @@ def _shares(
     return replace(shares, notes=notes, integrated=scales.inputs)
 
 
-def _why_not_weighted(weights: Smoothed | None) -> str:
+def _why_not_weighted(weights: ImportanceWeights | None) -> str:
     """Return why weights allow no shares, as they allow no standard deviation, or ""."""
     if weights is None or weights.k == -inf:
         return ""
@@ -238,7 +244,7 @@ def _few(rows: Result, event: IndexTarget) -> tuple[str, tuple[str, ...]]:
         return str(refusal), ()
 
 
-def _too_few_effective(hits: Floats, place: Nesting, weights: Smoothed | None) -> str:
+def _too_few_effective(hits: Floats, place: Nesting, weights: ImportanceWeights | None) -> str:
     """Return why an event has too few hits in rows of equal weight, or ""."""
     if weights is None:
         return ""

@@ -20,11 +20,9 @@ from uq.assess.sample import (
 )
 from uq.contract import Floats, Mask
 from uq.stats import order_statistics
-from uq.stats.clusters import Clusters, random_groups
 from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.intervals import (
     Ends,
-    replicates_of_some,
     scattered_share_interval,
     share_interval,
     upper_probability,
@@ -68,11 +66,11 @@ class CountedRows(Sample):
 
         NaN, with the reason, where there are too few rows; one end may still bound it.
         """
-        element, part = self.element, replicates_of_some(self.part, self.element.present)
+        element, dependence = self.element, self.dependence[self.element.present]
 
         def estimate(values: Floats, ascending: Floats) -> tuple[float, Ends]:
             ends = order_statistics.quantile_interval(
-                values, probability, part, self.confidence, ascending
+                values, probability, dependence, self.confidence, ascending
             )
             return order_statistics.quantile(ascending, probability), ends
 
@@ -161,9 +159,9 @@ class CountedRows(Sample):
             return Curve(*np.full((3, len(time)), np.nan))
         known_at_once = element.declared.never_known_at_once
         estimate = outliving(values, censored, time, known_at_once=known_at_once)
-        if self.part is None:
+        if self.dependence.is_none:
             return Curve(estimate.share, *self._pointwise(values, censored, time, estimate))
-        group = random_groups(self.part[element.present])
+        group = self.dependence[element.present].groups()
         shares = [
             outliving(
                 values[group == r], censored[group == r], time, known_at_once=known_at_once
@@ -172,9 +170,13 @@ class CountedRows(Sample):
         ]
         seen = len(values) - np.searchsorted(np.sort(values[censored]), time, side="right")
         at_risk = np.where((estimate.share > 0) & (estimate.share < 1), seen, np.nan)
-        samples = self.part.samples if isinstance(self.part, Clusters) else None
         interval = scattered_share_interval(
-            estimate.share, np.array(shares), None, self.confidence, rows=at_risk, samples=samples
+            estimate.share,
+            np.array(shares),
+            None,
+            self.confidence,
+            rows=at_risk,
+            samples=self.dependence.samples,
         )
         return Curve(estimate.share, *interval)
 
@@ -198,8 +200,7 @@ class CountedRows(Sample):
         if unknown.any():
             return Estimate(reason=censored_before(unknown))
         kept = ~self.element.failed
-        part = replicates_of_some(self.part, kept)
-        return share_of(hits[kept] > 0, part, self.confidence)
+        return share_of(hits[kept] > 0, self.dependence[kept], self.confidence)
 
     @cached_property
     def times(self) -> Floats:

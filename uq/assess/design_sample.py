@@ -19,6 +19,7 @@ from uq.result.elements import flags
 from uq.result.result import Result
 from uq.sampling.dependence import conditional_paths, normal_correlations
 from uq.sampling.designs import PLAIN
+from uq.stats.dependent_rows import Dependence
 from uq.study.file import Tied
 from uq.study.input_checks import laws_of
 
@@ -81,10 +82,9 @@ def sample_of(result: Result) -> DesignSample:
     nothing = np.full(len(result), np.nan)
     sample = DesignSample.plain(nothing, independent_inputs(result), random=result.is_random)
     if layout is PLAIN:
-        independent = result.has_independent_samples
-        return replace(
-            sample, replicate=None if independent else result.dataset["replicate"].values
-        )
+        if result.has_independent_samples:
+            return sample
+        return replace(sample, dependence=Dependence(result.dataset["replicate"].values))
     groups, blocks = _grouped_rows(result)
     sample = replace(
         sample,

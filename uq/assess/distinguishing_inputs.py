@@ -1,7 +1,7 @@
 """Inputs and regimes that distinguish the rows that end first from all rows."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,15 +11,13 @@ from uq.contract import Floats
 from uq.result.element import Element
 from uq.result.elements import flags
 from uq.result.result import Result
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import (
     CONFIDENCE,
-    Replicates,
     mean_interval,
-    replicates_of_some,
     share_interval,
 )
-from uq.stats.jumps import EvenReplicates
 
 SHARE = 0.05
 """The part of the rows that counts as the earliest."""
@@ -96,7 +94,7 @@ def inputs_apart(
     result: Result,
     first: Places,
     ranked: Mapping[str, Floats],
-    replicate: Replicates = None,
+    dependence: Dependence = INDEPENDENT,
 ) -> list[RankShift] | None:
     """Return the inputs whose values differ between some rows and all, the most different first.
 
@@ -108,7 +106,7 @@ def inputs_apart(
         Places of the rows.
     ranked : dict of str to ndarray, shape (n,)
         Ranks of each input in all rows, from 0 to 1 (`uq.stats.order_statistics.mid_ranks`).
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
 
     Returns
     -------
@@ -125,9 +123,8 @@ def inputs_apart(
     """
     mask = np.zeros(len(result), dtype=bool)
     mask[first] = True
-    part = replicates_of_some(replicate, mask)
-    if isinstance(part, EvenReplicates):  # a rank follows its input without a jump
-        part = part.view(np.ndarray)
+    # A rank follows its input without a jump.
+    dependence = replace(dependence[mask], inputs=None)
     sure = 1 - (1 - CONFIDENCE) / (2 * max(len(ranked), 1))
     columns = independent_inputs(result)
     differences, has_intervals = [], False
@@ -135,11 +132,11 @@ def inputs_apart(
         away = np.abs(rank - 0.5)
         # Ranks have a range of 1, their distances from the middle 1/2.
         for values, middle, size in ((rank, 0.5, 1.0), (away, float(away.mean()), 0.5)):
-            low, high = mean_interval(values[mask], part, sure)
+            low, high = mean_interval(values[mask], dependence, sure)
             has_intervals |= bool(np.isfinite(low))
             if low > middle or high < middle:
                 mean = float(values[mask].mean())
-                ends = mean_interval(values[mask], part)
+                ends = mean_interval(values[mask], dependence)
                 sign = 1 if mean > middle else -1
                 column = columns[name]
                 difference = RankShift(
@@ -158,28 +155,28 @@ def inputs_apart(
 
 
 def regimes_of_first(
-    result: Result, first: Places, replicate: Replicates = None
+    result: Result, first: Places, dependence: Dependence = INDEPENDENT
 ) -> list[RegimeOfFirst]:
     """Return regimes more frequent in the given rows than in all rows, the most frequent first.
 
     If there are none, their most frequent regime; nothing where all rows are in one regime.
     """
-    regimes = sorted(_regimes(result, first, replicate), key=lambda regime: -regime.share.value)
+    regimes = sorted(_regimes(result, first, dependence), key=lambda regime: -regime.share.value)
     more = [regime for regime in regimes if regime.is_more_frequent]
     return more or [regime for regime in regimes[:1] if regime.overall < 1]
 
 
-def _regimes(result: Result, first: Places, replicate: Replicates) -> Iterator[RegimeOfFirst]:
+def _regimes(result: Result, first: Places, dependence: Dependence) -> Iterator[RegimeOfFirst]:
     if "regime" not in result.dataset:
         return
     mask = np.zeros(len(result), dtype=bool)
     mask[first] = True
-    part = replicates_of_some(replicate, mask)
+    dependence = dependence[mask]
     regimes = [(code, label) for code, label in flags(result.dataset["regime"]) if code >= 0]
     sure = 1 - (1 - CONFIDENCE) / max(len(regimes), 1)
     for code, label in regimes:
         inside = result.dataset["regime"].values == code
         overall = float(inside.mean())
-        low, _ = share_interval(inside[mask], part, sure)
-        share = Estimate(float(inside[mask].mean()), *share_interval(inside[mask], part))
+        low, _ = share_interval(inside[mask], dependence, sure)
+        share = Estimate(float(inside[mask].mean()), *share_interval(inside[mask], dependence))
         yield RegimeOfFirst(label, share, overall, bool(low > overall))

@@ -9,15 +9,13 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats
 from uq.indices.measures import has_many_equal
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import (
     CONFIDENCE,
     Ends,
-    Replicates,
-    by_replicate,
     interval_of_mean,
     is_constant,
-    replicates_of_some,
     share_interval,
     sized,
 )
@@ -70,7 +68,7 @@ class Effect:
 def effects(
     values: Floats,
     inputs: Mapping[str, Floats],
-    replicate: Replicates = None,
+    dependence: Dependence = INDEPENDENT,
     names: Collection[str] | None = None,
 ) -> dict[str, Effect]:
     """Estimate average effects of inputs on an output.
@@ -80,8 +78,7 @@ def effects(
     values : ndarray, shape (n,)
         NaN where a row has none.
     inputs : dict of str to ndarray, shape (n,)
-    replicate : ndarray of int, shape (n,), optional
-        Of each row; None where rows are independent.
+    dependence : Dependence, optional
     names : collection of str, optional
         The inputs whose effects are returned; by default all.
 
@@ -101,7 +98,7 @@ def effects(
        estimators with improved finite sample properties", J. Econometrics 29, 305-325 (1985).
     """
     kept = np.isfinite(values)
-    part = None if replicate is None else replicate[kept]
+    dependence = dependence[kept]
     columns, logarithmic = {}, {}
     for name, column in inputs.items():
         selected = column[kept]
@@ -127,11 +124,11 @@ def effects(
         if names is not None and name not in names:
             continue
         slope = float(slopes[i + 1])
-        low, high = _interval(slope, slope + influence[:, i + 1], part)
+        low, high = _interval(slope, slope + influence[:, i + 1], dependence)
         size = sizes[name]
         value, low, high = (unit * float(number) / size for number in (slope, low, high))
         of_input = Estimate(value, low, high)
-        turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), part)
+        turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), dependence)
         by_input[name] = Effect(
             of_input, logarithmic[name], sizes[name], turns, has_many_equal(columns[name])
         )
@@ -146,7 +143,7 @@ def _suits_logarithm(column: Floats) -> bool:
     return bool(abs((away**3).mean()) < _SKEWED)
 
 
-def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
+def _turns(partial: Floats, x: Floats, sign: float, dependence: Dependence) -> bool:
     """Return whether a partial effect steps against its slope between adjacent fifths."""
     edges = np.quantile(x, np.linspace(0, 1, PIECES + 1)[1:-1])
     piece = np.searchsorted(edges, x, side="right")
@@ -158,18 +155,20 @@ def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
     for first in range(PIECES - 1):
         step = means[first + 1] - means[first]
         side = np.where(piece == first + 1, 1.0, np.where(piece == first, -1.0, 0.0))
-        ends = _interval(step, step + side * around, part, _SURE)
+        ends = _interval(step, step + side * around, dependence, _SURE)
         if (sign > 0 and ends[1] < 0) or (sign < 0 and ends[0] > 0):
             return True
     return False
 
 
-def _interval(value: float, rows: Floats, part: Replicates, confidence: float = CONFIDENCE) -> Ends:
+def _interval(
+    value: float, rows: Floats, dependence: Dependence, confidence: float = CONFIDENCE
+) -> Ends:
     """Return the interval of an estimate from the influence of each row."""
-    estimates = rows if part is None else by_replicate(rows, part)
+    estimates = dependence.part_means(rows)
     if len(estimates) > 1 and is_constant(estimates):  # no row deviates
         return value, value
-    return interval_of_mean(value, rows, part, confidence)
+    return interval_of_mean(value, rows, dependence, confidence)
 
 
 MOST_PARTS = 12
@@ -224,7 +223,7 @@ class EventCurve(NamedTuple):
         return 0, len(self.shares) - 1
 
 
-def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventCurve | None:
+def event_curve(hits: Floats, x: Floats, dependence: Dependence = INDEPENDENT) -> EventCurve | None:
     """Estimate the probability of an event in parts of an input.
 
     Parameters
@@ -233,7 +232,7 @@ def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventC
         1 where it happened, 0 where not, NaN where that is not known.
     x : ndarray, shape (n,)
         The input.
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
 
     Returns
     -------
@@ -243,7 +242,7 @@ def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventC
     """
     kept = np.isfinite(hits)
     values, happened = x[kept], hits[kept] > 0
-    part = replicates_of_some(replicate, kept)
+    dependence = dependence[kept]
     parts = min(MOST_PARTS, len(values) // ROWS_PER_PART)
     if parts < 2:
         return None
@@ -259,7 +258,7 @@ def event_curve(hits: Floats, x: Floats, replicate: Replicates = None) -> EventC
     shares = []
     for i in range(len(edges) - 1):
         inside = place == i
-        low, high = share_interval(happened[inside], replicates_of_some(part, inside))
+        low, high = share_interval(happened[inside], dependence[inside])
         value = float(happened[inside].mean()) if inside.any() else np.nan
         shares.append(Estimate(value, float(low), float(high)))
     return EventCurve(edges, shares, len(shares) == len(distinct))

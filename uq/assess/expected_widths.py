@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uq.assess.targets import lightened, number_of
+from uq.assess.targets import number_of, transformed_if_heavy
 from uq.contract import Floats
 from uq.indices.method import DesignSample, SensitivityMethod
 from uq.indices.methods import METHODS, piloted_by
@@ -77,7 +77,9 @@ def expected_widths(pilot: Result) -> dict[str, Widths]:
     ):
         usable = factor if len(element.at_least) >= _ENOUGH_ROWS else None
         limits = analysis.thresholds.get(element.output, ())
-        sample = DesignSample(lightened(number_of(whole)).values, {}, groups[None], tuple(labels))
+        sample = DesignSample(
+            transformed_if_heavy(number_of(whole)).values, {}, groups[None], tuple(labels)
+        )
         widths[element.name] = Widths(
             units=element.units,
             mean=usable and _mean(element, rows, usable),

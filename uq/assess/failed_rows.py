@@ -15,8 +15,9 @@ from numpy.typing import ArrayLike
 from uq.assess.statistic import Context, Maker, Statistic
 from uq.contract import Floats, Mask
 from uq.result.element import Element
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import Estimate
-from uq.stats.intervals import Replicates, replicates_of_some, share_interval
+from uq.stats.intervals import share_interval
 
 
 def with_failed_at(element: Element, value: float) -> Element:
@@ -116,14 +117,16 @@ def outer(which: str, bound: ArrayLike, end: ArrayLike) -> Floats:
     return np.where(np.isnan(bound), np.nan, widest)
 
 
-def failed_share_bounds(hits: Mask, failed: Mask, replicate: Replicates) -> Estimate | None:
+def failed_share_bounds(
+    hits: Mask, failed: Mask, dependence: Dependence = INDEPENDENT
+) -> Estimate | None:
     """Return bounds of a share with all failed rows among the misses, and among the hits.
 
     Parameters
     ----------
     hits, failed : ndarray of bool, shape (n,)
         Of all independent rows.
-    replicate : ndarray of int, shape (n,), or None
+    dependence : Dependence, optional
 
     Returns
     -------
@@ -132,10 +135,10 @@ def failed_share_bounds(hits: Mask, failed: Mask, replicate: Replicates) -> Esti
     """
     if not failed.any():
         return None
-    plain = share_interval(hits[~failed], replicates_of_some(replicate, ~failed))
+    plain = share_interval(hits[~failed], dependence[~failed])
 
     def bound(which: str, place: int, some: Mask) -> float:
-        end = share_interval(some, replicate)[place]
+        end = share_interval(some, dependence)[place]
         return float(outer(which, end if np.isfinite(end) else some.mean(), plain[place]))
 
     return Estimate(low=bound("low", 0, hits & ~failed), high=bound("high", 1, hits | failed))

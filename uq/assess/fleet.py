@@ -11,10 +11,10 @@ from uq.assess.fact import Fact
 from uq.assess.fleet_numbers import Banded, FleetNumbers
 from uq.assess.fleet_units import Units, units_of
 from uq.assess.integrated_inputs import without_effect
-from uq.assess.population import BY_WEIGHTS
 from uq.assess.row_inputs import inputs_of
 from uq.assess.summary import why_no_intervals
 from uq.assess.summary_facts import quality_facts
+from uq.assess.weighted_mixture import BY_WEIGHTS
 from uq.errors import InputError, choices
 from uq.result.element import Element
 from uq.result.nesting import Nesting, samples_have, size_in_words
@@ -22,9 +22,8 @@ from uq.result.result import AnyResult, Result
 from uq.sampling.designs import several
 from uq.sampling.levels import SHARED
 from uq.stats import estimate_json
-from uq.stats.clusters import Clusters
-from uq.stats.importance_weights import Smoothed, of_samples, quality, worth_in_words
-from uq.stats.intervals import Replicates
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
+from uq.stats.importance_weights import ImportanceWeights, of_samples, quality, worth_in_words
 from uq.text.units import beside
 
 if TYPE_CHECKING:
@@ -55,7 +54,7 @@ class Fleet:
         Whether the end of the life is wished for.
     units : str
         Of the life.
-    weights : Smoothed or None
+    weights : ImportanceWeights or None
         Of samples, where inspections have weighted them.
     """
 
@@ -70,7 +69,7 @@ class Fleet:
     notes: list[str]
     is_success: bool = False
     units: str = "s"
-    weights: Smoothed | None = None
+    weights: ImportanceWeights | None = None
 
     @property
     def ended(self) -> str:
@@ -191,7 +190,7 @@ def fleet_of(
     if bad := [time for time in by if not 0 < time < inf]:
         raise InputError(f"uq fleet: {bad[0]!r} is not a time after the start")
     rows = result.independent
-    element = the_life(rows, output)
+    element = lifetime_element(rows, output)
     units = units_of(rows, element, plain=plain)
     _refuse(units, size)
     analysis = result.analysis
@@ -203,9 +202,10 @@ def fleet_of(
                 f" {beside(repr(time), element.declared.unit)}; ask for an earlier time, or compute"
                 " a longer horizon"
             )
-    part = _part_of_samples(rows, units.place)
+    dependence = _dependence_of_samples(rows, units.place)
     idle = without_effect(inputs_of(rows), element.declared)
-    fleet_numbers = FleetNumbers(units, size, allow, part, SHARED in rows.levels_that_vary(idle))
+    varies = SHARED in rows.levels_that_vary(idle)
+    fleet_numbers = FleetNumbers(units, size, allow, dependence, varies)
     first = {p: fleet_numbers.first(p) for p in analysis.quantiles}
     ended = {
         time: (fleet_numbers.failed(time), fleet_numbers.at_most_allowed(time)) for time in times
@@ -230,7 +230,7 @@ def fleet_of(
     return Fleet(element.name, size, allow, *numbers, notes, *of_life, weights)
 
 
-def the_life(rows: Result, output: str | None) -> Element:
+def lifetime_element(rows: Result, output: str | None) -> Element:
     """Return the named life, or the only one."""
     outputs = rows.outputs
     shown = [name for name in rows.shown_outputs(rows.analysis) if outputs[name].is_lifetime]
@@ -255,13 +255,12 @@ def _refuse(units: Units, size: int) -> None:
         )
 
 
-def _part_of_samples(rows: Result, place: Nesting) -> Replicates:
-    """Return the independent part of each sample, shape (samples,)."""
-    part = rows.replicates
-    if isinstance(part, Clusters) and part.together is not None:
+def _dependence_of_samples(rows: Result, place: Nesting) -> Dependence:
+    """Return the dependence between samples."""
+    if rows.dependence.shared is not None:
         _, first = np.unique(place.sample, return_index=True)
-        return part[first]
-    return None if rows.has_independent_samples else place.replicate
+        return rows.dependence[first]
+    return INDEPENDENT if rows.has_independent_samples else Dependence(place.replicate)
 
 
 def fleet_facts(fleets: Fleet) -> Fact:

@@ -10,10 +10,10 @@ from scipy import special
 from uq.assess import random_effects
 from uq.assess.failed_rows import bounds, with_failed_at
 from uq.assess.fleet_units import Units
-from uq.assess.population import first_step
+from uq.assess.weighted_mixture import first_step
 from uq.sampling.designs import several
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
-from uq.stats.intervals import Replicates, replicates_of_some
 from uq.stats.roots import root
 
 LOW, HIGH = 0.05, 0.95
@@ -51,14 +51,14 @@ class FleetNumbers:
     ----------
     units : Units
     size, allow : int
-    part : ndarray of int, shape (samples,), or None
-        The replicate of each sample; None where samples are independent.
+    dependence : Dependence
+        Of the samples.
     varies : bool
         Whether shared inputs vary.
     """
 
-    def __init__(self, units: Units, size: int, allow: int, part: Replicates, varies: bool):
-        self._size, self._allow, self._part = size, allow, part
+    def __init__(self, units: Units, size: int, allow: int, dependence: Dependence, varies: bool):
+        self._size, self._allow, self._dependence = size, allow, dependence
         self._units = units
         self._varies = varies
         self.ends: list[tuple[Estimate, Estimate]] = []
@@ -66,9 +66,9 @@ class FleetNumbers:
         if units.element.failed.any():
             lost = (with_failed_at(units.element, life) for life in (0.0, np.inf))
             self._cases += [replace(units, element=element) for element in lost]
-        self._first = [case.fleet(size, 0, part) for case in self._cases]
-        self._beyond = [case.fleet(size, allow, part) for case in self._cases]
-        self._alone = [case.fleet(1, 0, part) for case in self._cases]
+        self._first = [case.fleet(size, 0, dependence) for case in self._cases]
+        self._beyond = [case.fleet(size, allow, dependence) for case in self._cases]
+        self._alone = [case.fleet(1, 0, dependence) for case in self._cases]
         self.first_of = self._first[0]
         self._spreads: dict[float, random_effects.Exceeding] = {}
 
@@ -158,14 +158,16 @@ class FleetNumbers:
             return lambda probability: Estimate(reason=why)
         if not units.are_alike:
             return random_effects.DeconvolvedProbability(
-                units.ended(time), units.weights, self._part, units.of_worlds
+                units.ended(time), units.weights, self._dependence, units.of_worlds
             )
         kept = world.present
-        part = replicates_of_some(self._part, kept)
+        dependence = self._dependence[kept]
         weights = None if units.of_worlds is None else units.of_worlds[kept]
         if units.end_together:
-            return random_effects.certain(world.below(time)[kept], part, weights)
-        return random_effects.noise_free(units.ended(time)[kept, 0], units.nodes, part, weights)
+            return random_effects.certain(world.below(time)[kept], dependence, weights)
+        return random_effects.noise_free(
+            units.ended(time)[kept, 0], units.nodes, dependence, weights
+        )
 
     def _unit_at(self, time: float, share: float) -> Estimate:
         """Return the quantile over worlds of the failure probability of a unit."""

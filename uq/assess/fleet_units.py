@@ -18,17 +18,17 @@ from uq.assess.integrated_inputs import (
     why_not_integrated,
     without_effect,
 )
-from uq.assess.population import as_sample
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.sample import Sample
 from uq.assess.scale_laws import Scale
+from uq.assess.weighted_mixture import as_sample
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.result.nesting import Nesting
 from uq.result.result import Result
 from uq.sampling.levels import CHANCE, OWN, SHARED
 from uq.stats.counting import fleet_failure_probabilities, more_than
-from uq.stats.intervals import Replicates
+from uq.stats.dependent_rows import Dependence
 
 _NODES = 120
 """Integration steps between standard normal quantiles of -6 and 6, for inputs integrated per world.
@@ -117,8 +117,8 @@ class Units:
             return self._of_units(self.element.below(time))[..., None]
         probabilities, lives = [], self.element.values
         with np.errstate(over="ignore", under="ignore"):
-            for longer in self.shared.longer(self.nodes):
-                other = replace(self.element, values=lives * np.exp(longer))
+            for shifts in self.shared.log_life_shifts(self.nodes):
+                other = replace(self.element, values=lives * np.exp(shifts))
                 probabilities.append(self._of_units(other.below(time)))
         return np.stack(probabilities, axis=-1)
 
@@ -132,8 +132,8 @@ class Units:
         means = np.divide(sums, count, out=np.full(count.shape, np.nan), where=count > 0)
         return means[:, None] if self.are_alike else means
 
-    def fleet(self, size: int, allow: int, part: Replicates) -> Sample:
-        """Return the population of the times by which more than `allow` of `size` have ended.
+    def fleet(self, size: int, allow: int, dependence: Dependence) -> Sample:
+        """Return the mixture of the times by which more than `allow` of `size` have ended.
 
         Its rows are worlds, each the law of this time. Worlds with too few units have none.
         """
@@ -153,7 +153,7 @@ class Units:
             _MoreThan(self, size, allow),
             self.of_worlds,
         )
-        return as_sample(worlds, part)
+        return as_sample(worlds, dependence)
 
     @property
     def _mask(self) -> Mask:

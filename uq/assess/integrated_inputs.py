@@ -11,8 +11,8 @@ from uq.assess.scale_laws import (
     ConditionalScale,
     IndependentScale,
     Scale,
-    learnt_input,
-    learnt_scale,
+    posterior_input,
+    posterior_scale,
 )
 from uq.contract import Floats, Output
 from uq.result.element import Element
@@ -223,7 +223,7 @@ def elements_with_laws(
     for element in rows.elements(outputs):
         if not plain and element.declared.scales and not element.censored.any():
             inputs = inputs or inputs_of(rows)
-            learnt = learnt_scale(rows, inputs, scalers(inputs, element.declared))
+            learnt = posterior_scale(rows, inputs, scalers(inputs, element.declared))
             law = learnt or integrated(rows, element.declared, inputs)[0]
             element = replace(element, law=law)
         yield element
@@ -241,7 +241,9 @@ def why_not_integrated(rows: Result, element: Element) -> str:
         lives = counted(count, "life is", "lives are")
         return f"{names} not integrated: {lives} censored, which gives bounds only"
     _, kept = integrated(rows, element.declared, inputs)
-    return not_integrated({name: why for name, why in kept.items() if name != learnt_input(rows)})
+    return not_integrated(
+        {name: why for name, why in kept.items() if name != posterior_input(rows)}
+    )
 
 
 def not_integrated(kept: Mapping[str, str]) -> str:

@@ -263,7 +263,7 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     result = Result.of(result)
     result.refuse_if_weighted("laws fitted to lives")
     rows = result.independent
-    independent = rows.replicates is None
+    independent = rows.dependence.is_none
     lines = {
         (element.name, law): _line(fit)
         for element in rows.lifetimes(output)

@@ -18,7 +18,7 @@ from uq.result.result import Result
 from uq.stats import intervals, two_samples
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import exact_interval
-from uq.stats.jumps import beyond_jumps
+from uq.stats.jumps import widened_for_jumps
 from uq.stats.weighted_means import share_to_compare
 from uq.study.file import Tied
 
@@ -28,7 +28,7 @@ WORST = -1.0
 """The correlation at which a difference is least certain."""
 
 
-class Kinship(Enum):
+class Pairing(Enum):
     """Relation between the rows of two results; the value is the sentence that reports it."""
 
     INDEPENDENT = "The seeds differ: the two samples are independent."
@@ -46,7 +46,7 @@ class Kinship(Enum):
     )
 
 
-def kinship(first: Result, second: Result) -> Kinship:
+def pairing(first: Result, second: Result) -> Pairing:
     """Return how the rows of two results are related.
 
     Parameters
@@ -56,27 +56,27 @@ def kinship(first: Result, second: Result) -> Kinship:
 
     Returns
     -------
-    Kinship
+    Pairing
     """
     both = (first, second)
     if any(result.has_weights for result in both):
-        return Kinship.WEIGHTED
+        return Pairing.WEIGHTED
     if any(result.design.imported for result in both):
-        return _kinship_of_imported(first, second)
+        return _pairing_of_imported(first, second)
     if first.dataset.attrs["seed"] != second.dataset.attrs["seed"]:
-        return Kinship.INDEPENDENT
+        return Pairing.INDEPENDENT
     independent = [result.has_independent_samples for result in both]
     if any(independent) and any(result.is_nested for result in both):
-        return Kinship.ROWS_SAME if _same_rows(first, second) else Kinship.UNKNOWN
+        return Pairing.ROWS_SAME if _same_rows(first, second) else Pairing.UNKNOWN
     if all(independent):
         same = _columns(first) == _columns(second)
-        return Kinship.ROWS if same else Kinship.UNKNOWN
+        return Pairing.ROWS if same else Pairing.UNKNOWN
     if (
         not any(independent)
         and first.dataset.attrs["replicates"] == second.dataset.attrs["replicates"]
     ):
-        return Kinship.REPLICATES
-    return Kinship.UNKNOWN
+        return Pairing.REPLICATES
+    return Pairing.UNKNOWN
 
 
 def _same_rows(first: Result, second: Result) -> bool:
@@ -86,13 +86,13 @@ def _same_rows(first: Result, second: Result) -> bool:
     return first.dataset.drop_attrs().equals(second.dataset.drop_attrs())
 
 
-def _kinship_of_imported(first: Result, second: Result) -> Kinship:
+def _pairing_of_imported(first: Result, second: Result) -> Pairing:
     """Return how two results are related if one is imported, so that seeds do not matter."""
     files = [result.study for result in (first, second)]
     same = files[0].data == files[1].data and files[0].design.method == files[1].design.method
     if same and all(result.has_independent_rows for result in (first, second)):
-        return Kinship.ROWS_IMPORTED
-    return Kinship.UNKNOWN_IMPORTED
+        return Pairing.ROWS_IMPORTED
+    return Pairing.UNKNOWN_IMPORTED
 
 
 def _columns(result: Result) -> int:
@@ -152,17 +152,17 @@ class Pair:
 
     def __init__(self, first: Result, second: Result) -> None:
         self.rows = (first.independent, second.independent)
-        self.kinship = kinship(first, second)
-        self._replicate = [rows.replicates for rows in self.rows]
-        rows = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
+        self.pairing = pairing(first, second)
+        self._dependence = [rows.dependence for rows in self.rows]
+        rows = self.pairing in (Pairing.ROWS, Pairing.ROWS_IMPORTED)
         self._shared = shared_rows(*self.rows) if rows else None
-        self._paired = rows or self.kinship in (Kinship.REPLICATES, Kinship.ROWS_SAME)
+        self._paired = rows or self.pairing in (Pairing.REPLICATES, Pairing.ROWS_SAME)
 
     def difference(
         self, estimator: Estimator, samples: list[SelectedRows], estimates: list[Estimate]
     ) -> Estimate:
         """Return an estimate from the second result less that from the first."""
-        if self.kinship is Kinship.REPLICATES and not estimator.is_share:
+        if self.pairing is Pairing.REPLICATES and not estimator.is_share:
             value = estimates[1].value - estimates[0].value
             by_replicate = [
                 self._by_replicate(estimator, i, rows) for i, rows in enumerate(samples)
@@ -175,10 +175,10 @@ class Pair:
             ):  # they differ only by rounding
                 return Estimate(value)
             ends = intervals.scatter_interval(value, apart)
-            return Estimate(value, *self._beyond_jumps(value, ends, estimator, samples))
-        if self.kinship is Kinship.WEIGHTED:
+            return Estimate(value, *self._widened_for_jumps(value, ends, estimator, samples))
+        if self.pairing is Pairing.WEIGHTED:
             return two_samples.difference(estimates[0], estimates[1], self.unpaired)
-        if estimator.counts_hits and all(replicate is None for replicate in self._replicate):
+        if estimator.counts_hits and all(rows.is_none for rows in self._dependence):
             estimates = [_newcombe(sample) for sample in samples]
         elif estimator.averages:
             estimates = [self._averaged(i, sample) for i, sample in enumerate(samples)]
@@ -228,7 +228,7 @@ class Pair:
 
     def ratio(self, samples: list[SelectedRows], estimates: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
-        if self.kinship is Kinship.REPLICATES and all(estimate.value > 0 for estimate in estimates):
+        if self.pairing is Pairing.REPLICATES and all(estimate.value > 0 for estimate in estimates):
             by_replicate = [self._by_replicate(SD, i, sample) for i, sample in enumerate(samples)]
             return _factor(
                 estimates[1].value / estimates[0].value, by_replicate[1], by_replicate[0]
@@ -240,7 +240,7 @@ class Pair:
     @property
     def unpaired(self) -> float:
         """The correlation to assume where rows are not paired."""
-        return 0.0 if self.kinship is Kinship.INDEPENDENT else WORST
+        return 0.0 if self.pairing is Pairing.INDEPENDENT else WORST
 
     def _correlation(self, estimator: Estimator, samples: list[SelectedRows]) -> float:
         """Return the correlation of influences of paired rows, or of means in paired replicates.
@@ -249,58 +249,57 @@ class Pair:
         Student's t interval of the linearised differences between replicates, whose own quantiles
         are poor estimates.
         """
-        if self._shared is None and self.kinship is not Kinship.REPLICATES:
+        if self._shared is None and self.pairing is not Pairing.REPLICATES:
             return self.unpaired
-        pulls = [_pull(estimator, sample) for sample in samples]
+        influences = [_influence(estimator, sample) for sample in samples]
         if self._shared is not None:
-            first, second = (pull.numbers for pull in pulls)
+            first, second = (influence.numbers for influence in influences)
             return correlation(first, second, self._shared, is_share=estimator.is_share)
-        means = [self._by_replicate(MEAN, i, pull) for i, pull in enumerate(pulls)]
+        means = [self._by_replicate(MEAN, i, rows) for i, rows in enumerate(influences)]
         if not all(np.isfinite(mean).all() and not intervals.is_constant(mean) for mean in means):
             return np.nan
         return float(np.asarray(np.corrcoef(means))[0, 1])
 
-    def _beyond_jumps(
+    def _widened_for_jumps(
         self, value: float, ends: intervals.Ends, estimator: Estimator, samples: list[SelectedRows]
     ) -> intervals.Ends:
         """Return the interval of a difference, with the error of jumps that replicates hide.
 
         Of the difference row by row where both results have the same ones: most jumps cancel.
         """
-        rows, kept = self.rows, [sample.kept for sample in samples]
+        (first, second), kept = self.rows, [sample.kept for sample in samples]
         influence = [estimator.influence(sample.numbers[sample.kept]) for sample in samples]
-        parts = [of[k] for of, k in zip(self._replicate, kept, strict=True) if of is not None]
+        dependence = [of[k] for of, k in zip(self._dependence, kept, strict=True)]
         if np.array_equal(kept[0], kept[1]) and all(
-            np.array_equal(rows[0].dataset[name].values, rows[1].dataset[name].values)
+            np.array_equal(first.dataset[name].values, second.dataset[name].values)
             for name in ("replicate", "group", "block")
         ):
-            influence, parts = [influence[1] - influence[0]], parts[:1]
-        for of_rows, part in zip(influence, parts, strict=True):
-            ends = beyond_jumps(value, ends, of_rows, part, intervals.CONFIDENCE)
+            influence, dependence = [influence[1] - influence[0]], dependence[:1]
+        for of_rows, rows in zip(influence, dependence, strict=True):
+            ends = widened_for_jumps(value, ends, of_rows, rows.neighbours, intervals.CONFIDENCE)
         return ends
 
     def _averaged(self, i: int, sample: SelectedRows) -> Estimate:
         """Return a mean of probabilities with the interval from which a difference is built."""
-        part = intervals.replicates_of_some(self._replicate[i], sample.kept)
-        return share_to_compare(sample.numbers[sample.kept], part=part)
+        return share_to_compare(sample.numbers[sample.kept], self._dependence[i][sample.kept])
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: SelectedRows) -> Floats:
-        of, count = self._replicate[i], int(self.rows[i].dataset.attrs["replicates"])
-        assert of is not None, "independent rows have no replicates"
+        labels, count = self._dependence[i].labels, int(self.rows[i].dataset.attrs["replicates"])
+        assert labels is not None, "independent rows have no replicates"
         estimates = np.full(count, np.nan)
         for r in range(count):
-            values = sample.numbers[sample.kept & (of == r)]
+            values = sample.numbers[sample.kept & (labels == r)]
             if len(values):
                 estimates[r] = estimator.of(values)
         return estimates
 
 
-def _pull(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
+def _influence(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
     """Return the influence of each row, 0 of those that take no part."""
-    pull = np.zeros(len(sample.numbers))
+    influence = np.zeros(len(sample.numbers))
     if sample.kept.any():
-        pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
-    return SelectedRows(sample.kept, pull)
+        influence[sample.kept] = estimator.relative_influence(sample.numbers[sample.kept])
+    return SelectedRows(sample.kept, influence)
 
 
 def _students(estimator: Estimator, sample: SelectedRows, estimate: Estimate) -> Estimate:

@@ -9,9 +9,10 @@ from scipy import special
 
 from uq.contract import Floats
 from uq.stats.counting import mixing_bounds
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows
-from uq.stats.intervals import ROUNDING, Replicates, share_interval
+from uq.stats.intervals import ROUNDING, share_interval
 from uq.stats.weighted_means import EXACT, weighted_share
 
 FEWEST_WORLDS = 20
@@ -40,7 +41,9 @@ Exceeding = Callable[[float], Estimate]
 """Probability -> the share of worlds in which a unit has a larger one."""
 
 
-def noise_free(ended: Floats, nodes: Floats, part: Replicates, weights: Floats | None) -> Exceeding:
+def noise_free(
+    ended: Floats, nodes: Floats, dependence: Dependence, weights: Floats | None
+) -> Exceeding:
     """Return the share of worlds with larger probabilities, which are known without noise.
 
     Parameters
@@ -49,20 +52,22 @@ def noise_free(ended: Floats, nodes: Floats, part: Replicates, weights: Floats |
         Falling along nodes.
     nodes : ndarray, shape (nodes,)
         Standard normal quantiles of integrated shared inputs; a single one if there are none.
-    part : ndarray of int, shape (samples,), or None
+    dependence : Dependence
+        Of the samples.
     weights : ndarray, shape (samples,), or None
 
     Returns
     -------
     callable
     """
+    labels = dependence.labels
 
     def of_one_node(probability: float) -> Estimate:
         hits = ended[:, 0] > probability
         if weights is not None:
-            return _mean(hits.astype(float), part, weights)
-        low, high = share_interval(hits, part)
-        if isnan(low) and part is not None and np.ptp(part) > 0:  # replicates agree
+            return _mean(hits.astype(float), dependence, weights)
+        low, high = share_interval(hits, dependence)
+        if isnan(low) and labels is not None and np.ptp(labels) > 0:  # replicates agree
             low, high = share_interval(hits)
         return Estimate(float(hits.mean()), low, high)
 
@@ -75,31 +80,32 @@ def noise_free(ended: Floats, nodes: Floats, part: Replicates, weights: Floats |
         gap = np.where(above > below, above - below, 1.0)
         at = nodes[after - 1] + np.clip((above - level) / gap, 0, 1) * (nodes[1] - nodes[0])
         share = np.where(count == 0, 0.0, np.where(count == len(nodes), 1.0, special.ndtr(at)))
-        return _mean(share, part, weights)
+        return _mean(share, dependence, weights)
 
     return of_one_node if len(nodes) == 1 else exceeding
 
 
-def certain(ended: Floats, part: Replicates, weights: Floats | None) -> Exceeding:
+def certain(ended: Floats, dependence: Dependence, weights: Floats | None) -> Exceeding:
     """Return the share of worlds with larger probabilities, where all units end together.
 
     Parameters
     ----------
     ended : ndarray, shape (samples,)
         Probability that the units of a sample have ended, over the integrated shared inputs.
-    part : ndarray of int, shape (samples,), or None
+    dependence : Dependence
+        Of the samples.
     weights : ndarray, shape (samples,), or None
 
     Returns
     -------
     callable
     """
-    share = _mean(ended, part, weights)
+    share = _mean(ended, dependence, weights)
     return lambda probability: share
 
 
-def _mean(share: Floats, part: Replicates, weights: Floats | None) -> Estimate:
-    estimate = weighted_share(share, weights, part)
+def _mean(share: Floats, dependence: Dependence, weights: Floats | None) -> Estimate:
+    estimate = weighted_share(share, weights, dependence)
     alike = estimate.reason == EXACT
     return Estimate(estimate.value, estimate.value, estimate.value) if alike else estimate
 
@@ -118,7 +124,8 @@ class DeconvolvedProbability:
     ended : ndarray, shape (samples, units, nodes)
         NaN for units that do not take part.
     weights : ndarray, shape (nodes,)
-    part : ndarray of int, shape (samples,), or None
+    dependence : Dependence
+        Of the samples.
     of_worlds : ndarray, shape (samples,), or None
         Their weights.
 
@@ -130,7 +137,11 @@ class DeconvolvedProbability:
     """
 
     def __init__(
-        self, ended: Floats, weights: Floats, part: Replicates, of_worlds: Floats | None = None
+        self,
+        ended: Floats,
+        weights: Floats,
+        dependence: Dependence,
+        of_worlds: Floats | None = None,
     ):
         thinned = slice(None, None, -(-len(weights) // _MOST_NODES))  # the likelihood is smooth
         ended, weights = ended[..., thinned], weights[thinned] / weights[thinned].sum()
@@ -143,7 +154,7 @@ class DeconvolvedProbability:
             self.refusal = ONE_UNIT
         if self.refusal:
             return
-        self._part = None if part is None else part[kept]
+        self._dependence = dependence[kept]
         ended, units = ended[kept], units[kept].astype(float)
         self._worth = worth = worth[kept] / worth[kept].mean()
         self._weights = weights
@@ -165,7 +176,7 @@ class DeconvolvedProbability:
         points = special.ndtr(self._z)
         of_counts = units if is_counted else size
         self._bounds = mixing_bounds(
-            points, mean, of_counts, weights, worth, self._part, is_counted
+            points, mean, of_counts, weights, worth, self._dependence, is_counted
         )
         size = np.minimum(size, _NARROWEST / self._cell**2)
         counts = np.stack([(mean * size).ravel(), ((1 - mean) * size).ravel()], axis=1)
@@ -185,8 +196,10 @@ class DeconvolvedProbability:
         above = np.clip((self._z - level) / self._cell + 0.5, 0.0, 1.0)
         expected = self._posterior @ above
         slopes = self._posterior @ (above * self._statistics).T - expected[:, None] * self._given
-        pulls = expected[self._place] @ self._weights + self._influences @ (self._share @ slopes)
-        estimate = weighted_share(pulls, self._worth, self._part, hits=[])
+        of_worlds = expected[self._place] @ self._weights + self._influences @ (
+            self._share @ slopes
+        )
+        estimate = weighted_share(of_worlds, self._worth, self._dependence, hits=[])
         if not isfinite(estimate.low):
             estimate = replace(estimate, low=estimate.value, high=estimate.value)
         least, most = self._bounds(probability)

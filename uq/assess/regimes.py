@@ -168,7 +168,7 @@ def regimes(result: AnyResult) -> xr.Dataset:
     ]
     moments = [[_moments(target.values[hits]) for hits in members] for target in targets]
     split = [
-        between_share(t.values, rows.dataset["regime"].values, rows.replicates) for t in targets
+        between_share(t.values, rows.dataset["regime"].values, rows.dependence) for t in targets
     ]
 
     sizes = (len(targets), len(members), len(inputs))

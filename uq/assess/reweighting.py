@@ -15,8 +15,8 @@ from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.dependence import normal_correlations
 from uq.sampling.truncation import OUTSIDE_AT_MOST, factor_ends, log_density_between, ppf_within
-from uq.stats.importance_weights import Smoothed, no_weights, smoothed
-from uq.stats.intervals import Replicates
+from uq.stats.dependent_rows import Dependence
+from uq.stats.importance_weights import ImportanceWeights, impossible_weights, smoothed
 
 
 def log_ratio(rows: int, old: Inputs, new: Inputs, integrated: Collection[str] = ()) -> Floats:
@@ -109,26 +109,26 @@ class Weighting:
         The independent rows of a result, or samples of several rows.
     old, new : Inputs
         The inputs of these rows, with the laws of either study.
-    part : ndarray of int, shape (n,), or None
-        The independent part of each row.
+    dependence : Dependence
+        Of the rows.
 
     Attributes
     ----------
-    used : dict of str to Smoothed
+    used : dict of str to ImportanceWeights
         Element -> its weights.
-    refused : dict of str to Smoothed
+    refused : dict of str to ImportanceWeights
         Element -> its weights, which cannot be trusted, or are impossible: the other study has
         values where no row can be.
     """
 
-    def __init__(self, rows: Result, old: Inputs, new: Inputs, part: Replicates):
-        self._rows, self._old, self._new, self._part = rows, old, new, part
-        self.used: dict[str, Smoothed] = {}
-        self.refused: dict[str, Smoothed] = {}
+    def __init__(self, rows: Result, old: Inputs, new: Inputs, dependence: Dependence):
+        self._rows, self._old, self._new, self._dependence = rows, old, new, dependence
+        self.used: dict[str, ImportanceWeights] = {}
+        self.refused: dict[str, ImportanceWeights] = {}
         self.integrating = cache(self._integrating)
 
     @property
-    def all_inputs(self) -> Smoothed:
+    def all_inputs(self) -> ImportanceWeights:
         """The weights with nothing integrated."""
         return self.integrating(())
 
@@ -168,11 +168,11 @@ class Weighting:
             self.used[element.name] = weights
             yield replace(element, law=law, weights=weights.weights)
 
-    def _integrating(self, inputs: tuple[str, ...]) -> Smoothed:
+    def _integrating(self, inputs: tuple[str, ...]) -> ImportanceWeights:
         """Return the weights of rows in which these inputs are integrated."""
         for name in changed_laws(self._old, self._new):
             if name not in inputs and (share := share_without_rows(self._old, self._new, name)):
-                return no_weights(
+                return impossible_weights(
                     len(self._rows),
                     f"uncertain.{name}: has {share:.2g} of its probability outside the study's"
                     " law, where there are no rows; run it as a separate study",
@@ -180,5 +180,5 @@ class Weighting:
         weights = log_ratio(len(self._rows), self._old, self._new, inputs)
         if not np.isfinite(weights.max()):
             why = "no row of this result is possible under the other laws"
-            return no_weights(len(weights), why)
-        return smoothed(weights, self._part)
+            return impossible_weights(len(weights), why)
+        return smoothed(weights, self._dependence)

@@ -14,15 +14,14 @@ from uq.result.element import Element
 from uq.result.elements import flags
 from uq.result.result import Result
 from uq.stats import importance_weights, order_statistics
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import NOTHING, Estimate
-from uq.stats.importance_weights import Smoothed, per_sample
+from uq.stats.importance_weights import ImportanceWeights
 from uq.stats.intervals import (
     CONFIDENCE,
     UNKNOWN,
     Ends,
-    Replicates,
     mean_interval,
-    replicates_of_some,
     share_interval,
 )
 from uq.stats.moments import Moments, moments, sd_interval, standard_deviation
@@ -41,7 +40,7 @@ def with_value(element: Element) -> SelectedRows:
     return SelectedRows(element.present, np.where(element.censored, np.inf, element.values))
 
 
-def whole(element: Element) -> SelectedRows:
+def value_and_censoring(element: Element) -> SelectedRows:
     """Return value and censoring of each row."""
     return SelectedRows(element.present, np.column_stack([element.values, element.censored]))
 
@@ -68,7 +67,7 @@ class Estimator:
     ----------
     of : callable
         Rows -> estimate.
-    pull : callable
+    relative_influence : callable
         Rows -> the influence of each, up to a factor; they sum to zero.
     sample : callable
         Element -> its rows; None where censored rows leave open which they are.
@@ -83,7 +82,7 @@ class Estimator:
     """
 
     of: Callable[[Floats], float]
-    pull: Callable[[Floats], Floats]
+    relative_influence: Callable[[Floats], Floats]
     sample: Callable[[Element], SelectedRows | None] = with_value
     is_share: bool = False
     counts_hits: bool = False
@@ -92,8 +91,8 @@ class Estimator:
 
     def influence(self, x: Floats) -> Floats:
         """Return the influence of each row on the estimate, a mean or a standard deviation."""
-        pull = self.pull(x)
-        return pull / (2 * x.std()) if self.is_scale else pull
+        influence = self.relative_influence(x)
+        return influence / (2 * x.std()) if self.is_scale else influence
 
 
 def _centred(x: Floats) -> Floats:
@@ -119,11 +118,11 @@ def quantile(probability: float) -> Estimator:
     def of(x: Floats) -> float:
         return order_statistics.quantile(x, probability)
 
-    def pull(x: Floats) -> Floats:
+    def relative_influence(x: Floats) -> Floats:
         below = x <= of(x)
         return below - below.mean()
 
-    return Estimator(of, pull, is_share=True)
+    return Estimator(of, relative_influence, is_share=True)
 
 
 class Curve(NamedTuple):
@@ -144,23 +143,22 @@ class Sample(ABC):
     Attributes
     ----------
     element : Element
-    part : ndarray of int, shape (n,), or None
-        The replicate or cluster of each row; None where rows are independent.
+    dependence : Dependence
     confidence : float
         Of intervals.
-    weights : Smoothed, optional
+    weights : ImportanceWeights, optional
         Of the rows with lives as computed, where they have weights.
     """
 
     element: Element
-    part: Replicates
+    dependence: Dependence = INDEPENDENT
     confidence: float = CONFIDENCE
-    weights: Smoothed | None = None
+    weights: ImportanceWeights | None = None
 
     @property
     def is_simple_random(self) -> bool:
         """Return whether rows are independent and unweighted, as exact bounds and tests need."""
-        return self.part is None and self.element.weights is None
+        return self.dependence.is_none and self.element.weights is None
 
     @property
     def by(self) -> dict[str, Functions]:
@@ -182,8 +180,8 @@ class Sample(ABC):
         if not len(element.at_least) or element.never.any() or element.censored.any():
             return Moments(NOTHING, NOTHING, None, None)
         kept = element.present
-        part = replicates_of_some(self.part, kept)
-        plain = moments(element.at_least, part, self.confidence)
+        dependence = self.dependence[kept]
+        plain = moments(element.at_least, dependence, self.confidence)
         if by is None:
             return plain
         mean, sd = (
@@ -191,7 +189,7 @@ class Sample(ABC):
             if other.reason
             else estimate
             for estimate, other in zip(
-                weighted_moments(element.values[kept], by.weights[kept], part),
+                weighted_moments(element.values[kept], by.weights[kept], dependence),
                 (plain.mean, plain.sd),
                 strict=True,
             )
@@ -232,7 +230,7 @@ class Sample(ABC):
         return self._share_never_ending(~element.failed)
 
     def _share_never_ending(self, kept: Mask) -> Estimate:
-        return share_of(self.element.never[kept], replicates_of_some(self.part, kept))
+        return share_of(self.element.never[kept], self.dependence[kept])
 
     @property
     def effective_rows(self) -> float | None:
@@ -240,8 +238,8 @@ class Sample(ABC):
         if self.element.weights is None:
             return None
         kept = self.element.present
-        part = replicates_of_some(self.part, kept)
-        return importance_weights.effective_rows(per_sample(self.element.weights[kept], part))
+        of_samples = self.dependence[kept].sums_of_samples(self.element.weights[kept])
+        return importance_weights.effective_rows(of_samples)
 
     # By each strategy in its own way
 
@@ -313,10 +311,12 @@ def on_side(threshold: float, side: str) -> Callable[[Element], SelectedRows | N
     return rows
 
 
-def share_of(hits: Mask, replicate: Replicates, confidence: float = CONFIDENCE) -> Estimate:
+def share_of(
+    hits: Mask, dependence: Dependence = INDEPENDENT, confidence: float = CONFIDENCE
+) -> Estimate:
     """Estimate the share of rows that are hits."""
     share = float(hits.mean()) if len(hits) else nan
-    return Estimate(share, *share_interval(hits, replicate, confidence))
+    return Estimate(share, *share_interval(hits, dependence, confidence))
 
 
 def censored_before(unknown: Mask) -> str:

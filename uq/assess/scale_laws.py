@@ -72,7 +72,7 @@ class IndependentScale:
             share = self.term.below(np.log(time) - np.log(lives) + self.drawn)
         return np.where(np.isnan(lives), 0.0, share)
 
-    def longer(self, z: Floats) -> Iterator[Floats]:
+    def log_life_shifts(self, z: Floats) -> Iterator[Floats]:
         """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in self.term.at(z):
             yield at - self.drawn
@@ -133,7 +133,7 @@ class ConditionalScale:
             share = cdf_between(self.law, value / self.other, *ends)
         return np.asarray(special.ndtr((special.ndtri(share) - self.mean) / self.deviation))
 
-    def longer(self, z: Floats) -> Iterator[Floats]:
+    def log_life_shifts(self, z: Floats) -> Iterator[Floats]:
         """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in np.sign(self.exponent) * z:
             u = special.ndtr(self.mean + self.deviation * at)
@@ -150,8 +150,8 @@ class ConditionalScale:
         """Mean growth of the logarithm of each life, and its variance, shapes (n,)."""
         nodes, weights = (array[0] for array in normal_rule(np.array([-np.inf, np.inf]), _NODES))
         mean = square = np.zeros(self.drawn.shape)
-        for weight, longer in zip(weights, self.longer(nodes), strict=True):
-            mean, square = mean + weight * longer, square + weight * longer**2
+        for weight, shifts in zip(weights, self.log_life_shifts(nodes), strict=True):
+            mean, square = mean + weight * shifts, square + weight * shifts**2
         return mean, np.maximum(square - mean**2, 0.0)
 
 
@@ -223,7 +223,7 @@ _FINE = np.linspace(-6.0, 6.0, 97)
 
 
 @dataclass(frozen=True)
-class LearntScale:
+class PosteriorScale:
     """An input that scales lives, given the inspections and all else in a row.
 
     Attributes
@@ -277,9 +277,9 @@ class LearntScale:
         return np.where(passed == 0, 0.0, np.where(passed == len(_FINE), 1.0, share))
 
 
-def learnt_scale(
+def posterior_scale(
     rows: Result, inputs: Inputs, exponents: Mapping[str, float]
-) -> LearntScale | None:
+) -> PosteriorScale | None:
     """Return the posterior law of the integrated input, if it only scales lives.
 
     Parameters
@@ -291,7 +291,7 @@ def learnt_scale(
     exponents : dict of str to float
         Of the inputs that only scale the lives.
     """
-    name = learnt_input(rows)
+    name = posterior_input(rows)
     if name not in exponents:
         return None
     from scipy.interpolate import PchipInterpolator  # late: it takes a while to import
@@ -301,17 +301,17 @@ def learnt_scale(
     terms = None
     if LAW_SCORES in rows.dataset:
         terms = TermsOfLaws(rows.dataset[LAW_SCORES].values, rows.dataset[SCALE_SCORES].values)
-    return LearntScale((name,), *arguments, scores, terms)
+    return PosteriorScale((name,), *arguments, scores, terms)
 
 
-def learnt_input(rows: Result) -> str:
+def posterior_input(rows: Result) -> str:
     """Return the input with a posterior law in each row, or ""."""
     return str(rows.dataset[SCALE_SCORES].attrs[INPUT]) if SCALE_SCORES in rows.dataset else ""
 
 
 def moments_of_input(rows: Result, inputs: Inputs) -> tuple[Floats, Floats]:
     """Return mean and variance of the integrated input in each row of an inspected unit, (n,)."""
-    name = learnt_input(rows)
+    name = posterior_input(rows)
     below = special.ndtr(rows.dataset[SCALE_SCORES].values)
     flat = ppf_within(inputs.laws[name], below.ravel(), inputs.bounds[name])
     values, worth = flat.reshape(below.shape), np.exp(-(SCORES**2) / 2)
@@ -354,7 +354,7 @@ class ConditionalLaw:
             return np.where(self.gone < 1, more / (1 - self.gone), 0.0)
 
 
-def learnt_terms(law: RowLaw | None, lives: Floats, time: float) -> tuple[Floats, Floats] | None:
+def posterior_terms(law: RowLaw | None, lives: Floats, time: float) -> tuple[Floats, Floats] | None:
     """Return the means of Legendre terms of a shared input in each row, or None without one.
 
     Parameters
@@ -366,14 +366,14 @@ def learnt_terms(law: RowLaw | None, lives: Floats, time: float) -> tuple[Floats
     Returns
     -------
     tuple of ndarray, shape (n, terms), or None
-        The means over the law of each row of the terms (`uq.stats.clusters.SharedInfluence`), and
-        of the terms times whether T < time.
+        The means over the law of each row of the terms of the shared law
+        (`uq.stats.dependent_rows.SharedInfluence`), and of the terms times whether T < time.
     """
-    if isinstance(law, LearntScale) and law.terms is not None:
+    if isinstance(law, PosteriorScale) and law.terms is not None:
         return law.terms.means, law.terms_below(lives, time, law.terms)
     if not isinstance(law, ConditionalLaw):
         return None
-    earlier, all_by = (learnt_terms(law.law, lives, at) for at in (law.since, time))
+    earlier, all_by = (posterior_terms(law.law, lives, at) for at in (law.since, time))
     if earlier is None or all_by is None:
         return None
     left = np.maximum(1 - law.gone, 1e-300)[:, None]

@@ -9,13 +9,12 @@ from typing import Any, NamedTuple
 
 from uq.assess.fact import Functions
 from uq.assess.joint_bounds import JointBound, joint_bounds
-from uq.assess.population import as_sample
 from uq.assess.sample import Estimator, Sample
+from uq.assess.weighted_mixture import as_sample
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, interval_text, value_text
-from uq.stats.importance_weights import Smoothed
-from uq.stats.intervals import Replicates
+from uq.stats.importance_weights import ImportanceWeights
 from uq.study.file import AnalysisTable
 from uq.text.numbers import number, percent, percent_interval
 
@@ -41,18 +40,13 @@ class Context:
         The independent rows of a result.
     analysis : AnalysisTable
         What the study asks for.
-    weights : Smoothed, optional
+    weights : ImportanceWeights, optional
         Of the rows with nothing integrated, where they stand for another study.
     """
 
     rows: Result
     analysis: AnalysisTable
-    weights: Smoothed | None = None
-
-    @property
-    def replicate(self) -> Replicates:
-        """The replicate of each row, shape (n,); None where rows are independent."""
-        return self.rows.replicates
+    weights: ImportanceWeights | None = None
 
     @cached_property
     def joint_bounds(self) -> list[JointBound]:
@@ -61,7 +55,7 @@ class Context:
 
     def sample(self, element: Element) -> Sample:
         """Return the rows of an element as a sample."""
-        return as_sample(element, self.replicate, weights=self.weights)
+        return as_sample(element, self.rows.dependence, weights=self.weights)
 
 
 @dataclass(frozen=True)

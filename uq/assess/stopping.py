@@ -15,14 +15,15 @@ import numpy as np
 from uq.assess.chosen_targets import wholes
 from uq.assess.design_sample import sample_of
 from uq.assess.integrated_inputs import elements_with_laws
-from uq.assess.population import as_sample
 from uq.assess.sensitivities import indices_of_target
-from uq.assess.targets import IndexTarget, lightened, number_of
+from uq.assess.targets import IndexTarget, number_of, transformed_if_heavy
+from uq.assess.weighted_mixture import as_sample
 from uq.indices.methods import METHODS, kinds_with_intervals
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PATHS
-from uq.stats import group_sequential, intervals
+from uq.stats import group_sequential
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import NOTHING, Estimate, rounded_text
 from uq.stats.moments import corrected_mean_interval
 from uq.stats.weighted_means import EXACT
@@ -160,11 +161,10 @@ def _statistics(design: "DesignTable", result: Result) -> Iterator[InterimEstima
     until, level = design.until, confidence(design)
     assert until is not None
     rows = result.independent
-    replicate = rows.replicates
     names = {element.name for element in rows.named_elements(until.output)}
     for element in elements_with_laws(rows, [until.output.partition("[")[0]]):
         if element.name in names:
-            estimate = statistic(element, until, replicate, level)
+            estimate = statistic(element, until, rows.dependence, level)
             units = "1" if until.threshold is not None else element.units
             lost = _lost(element)
             what = f"{until.estimate} of {element.name}"
@@ -180,9 +180,7 @@ def _lost(element: Element) -> str:
     )
 
 
-def statistic(
-    element: Element, until: "Until", replicate: intervals.Replicates, level: float
-) -> Estimate:
+def statistic(element: Element, until: "Until", dependence: Dependence, level: float) -> Estimate:
     """Estimate the statistic that a study monitors, for an element of independent rows.
 
     Parameters
@@ -190,7 +188,7 @@ def statistic(
     element : Element
     until : Until
         Not of an index.
-    replicate : ndarray of int, shape (n,), or None
+    dependence : Dependence
     level : float
         Confidence of the interval.
 
@@ -198,7 +196,7 @@ def statistic(
     -------
     Estimate
     """
-    sample = as_sample(element, replicate, level)
+    sample = as_sample(element, dependence, level)
     if until.threshold is not None:
         is_above = until.above is not None
         return (sample.probability_above if is_above else sample.probability_below)(until.threshold)
@@ -209,10 +207,10 @@ def statistic(
     if not np.isfinite(element.at_most).all():
         return Estimate(reason="some rows never end, or are censored")
     mean = sample.moments().mean
-    if replicate is None or intervals.parts_are_independent(replicate) or not mean.has_interval:
+    if dependence.has_independent_parts or not mean.has_interval:
         return mean
     # A few replicates show little of the skewness of their means.
-    low, high = corrected_mean_interval(element.at_least, replicate[element.present], level)
+    low, high = corrected_mean_interval(element.at_least, dependence[element.present], level)
     return replace(mean, low=low, high=high)
 
 
@@ -253,25 +251,15 @@ def _targets(result: Result, output: str) -> Iterator[IndexTarget]:
     if is_whole(output):
         yield next(wholes(elements))
     else:
-        yield from (lightened(number_of(element)) for element in elements)
-
-
-def why_ended_in_brief(design: "DesignTable", result: Result) -> str:
-    """State in a few words why a run with [design] until ended; see `why_ended`."""
-    assert design.until is not None
-    samples, seen = int(result.dataset.attrs["samples"]), _stop(design, result)[1]
-    wanted = _wanted(design.until.half_width, unit_of(seen.units, seen.estimate.value))
-    if seen.reached:
-        return f"ended at {grouped(samples)} of {grouped(design.samples)} samples: {wanted} reached"
-    return f"{grouped(samples)} samples spent: {wanted} not reached"
+        yield from (transformed_if_heavy(number_of(element)) for element in elements)
 
 
 HOPELESS = 4.0
 """So many times the budget is out of reach; a width is known to a factor of two."""
 
 
-def why_ended(design: "DesignTable", result: Result) -> str:
-    """State why a run ended, and the estimate at that point.
+def why_ended(design: "DesignTable", result: Result) -> tuple[str, str]:
+    """State why a run ended, in a few words, and with the estimate at that point.
 
     Parameters
     ----------
@@ -280,16 +268,28 @@ def why_ended(design: "DesignTable", result: Result) -> str:
     result : Result
         Its result.
     """
-    until, samples = design.until, int(result.dataset.attrs["samples"])
-    assert until is not None
-    size, seen = _stop(design, result)
-    estimate, unit = seen.estimate, unit_of(seen.units, seen.estimate.value)
+    assert design.until is not None
+    samples, (size, seen) = int(result.dataset.attrs["samples"]), _stop(design, result)
+    unit = unit_of(seen.units, seen.estimate.value)
+    wanted = _wanted(design.until.half_width, unit)
+    brief = f"{grouped(samples)} samples spent: {wanted} not reached"
+    if seen.reached:
+        brief = (
+            f"ended at {grouped(samples)} of {grouped(design.samples)} samples: {wanted} reached"
+        )
+    return brief, _estimate_at_end(design, samples, size, seen)
+
+
+def _estimate_at_end(design: "DesignTable", samples: int, size: int, seen: InterimEstimate) -> str:
+    """State the estimate at the end of a run, and whether it was the goal that ended it."""
+    assert design.until is not None
     if _has_none(seen):
         return f"the budget of {samples} samples is spent: {_without_interval(seen)}"
-    stated = f"{seen.what} {_in_words(estimate, unit)}"
+    unit = unit_of(seen.units, seen.estimate.value)
+    stated = f"{seen.what} {_in_words(seen.estimate, unit)}"
     if seen.lost:
         stated += f" (without {seen.lost})"
-    wanted = _wanted(until.half_width, unit)
+    wanted = _wanted(design.until.half_width, unit)
     if not seen.reached:
         needed = _needed(seen, samples)
         more = f": from the scatter of all rows, about {needed} samples are required" * bool(needed)

@@ -21,8 +21,8 @@ from uq.result.nesting import size_in_words
 from uq.result.result import Result
 from uq.result.weights import ONLY_INSPECTED
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import Smoothed
-from uq.stats.intervals import replicates_of_some, share_interval
+from uq.stats.importance_weights import ImportanceWeights
+from uq.stats.intervals import share_interval
 from uq.stats.weighted_means import weighted_share
 from uq.study.file import AnalysisTable
 from uq.text.units import ReadableUnit, typical, unit_of
@@ -114,7 +114,9 @@ class Summary:
         The largest number of rows that lack an element because they failed.
     notes : list of str
         Sentences on missing estimates.
-    weights : Smoothed, optional
+    why_ended : str
+        Why a run with `until` ended, in a few words; "" for others.
+    weights : ImportanceWeights, optional
         Of the rows, where inspections have weighted them.
     """
 
@@ -125,7 +127,8 @@ class Summary:
     outputs: Mapping[str, Described]
     most_failed: int
     notes: list[str]
-    weights: Smoothed | None = None
+    why_ended: str = ""
+    weights: ImportanceWeights | None = None
 
     @property
     def samples(self) -> int:
@@ -190,7 +193,7 @@ def summarise(
     analysis = analysis or result.analysis
     if fits:
         result.refuse_if_weighted("laws fitted to lives")
-    notes = _notes(result)
+    why_ended, notes = _notes(result)
     if regime is not None:
         result = result.within_regime(regime)
     rows = result.independent
@@ -215,6 +218,7 @@ def summarise(
         outputs=outputs,
         most_failed=most,
         notes=notes,
+        why_ended=why_ended,
         weights=of_all if weighting is None else None,
     )
 
@@ -281,21 +285,20 @@ def _categories(result: Result, shown: Collection[str]) -> list[str]:
 
 
 def category_shares(
-    rows: Result, name: str, weights: Smoothed | None = None
+    rows: Result, name: str, weights: ImportanceWeights | None = None
 ) -> dict[str, Statistic]:
     """Return the share of each label of a category among the independent rows that did not fail.
 
     The name is an output, or one element of it.
     """
-    replicate = rows.replicates
+    dependence = rows.dependence
 
     def estimate(hits: Mask, kept: Mask) -> Estimate:
-        part = replicates_of_some(replicate, kept)
         if weights is None:
-            return share_of(hits[kept], part)
+            return share_of(hits[kept], dependence[kept])
         if weights.refusal:
             return Estimate(reason=weights.refusal)
-        return weighted_share(hits[kept].astype(float), weights.weights[kept], part)
+        return weighted_share(hits[kept].astype(float), weights.weights[kept], dependence[kept])
 
     return {
         label: Statistic(
@@ -303,7 +306,7 @@ def category_shares(
             label,
             estimate(hits, kept),
             kind=SHARE,
-            failed=failed_share_bounds(hits, ~kept, replicate) if weights is None else None,
+            failed=failed_share_bounds(hits, ~kept, dependence) if weights is None else None,
             facts={"count": int(hits[kept].sum())},
             estimator=share(),
             by=(share_of, share_interval) if weights is None else (weighted_share,),
@@ -313,19 +316,21 @@ def category_shares(
     }
 
 
-def _notes(result: Result) -> list[str]:
+def _notes(result: Result) -> tuple[str, list[str]]:
+    """Return why a run with `until` ended, in a few words, and sentences on missing estimates."""
     if why := result.why_no_statistics:
-        return [NO_STATISTICS.format(design=result.design_name, why=why)]
+        return "", [NO_STATISTICS.format(design=result.design_name, why=why)]
     design = result.study.design
-    notes = []
+    brief, notes = "", list[str]()
     if design.until is not None and not result.has_weights:
-        notes.append(why_ended(design, result))
+        brief, in_full = why_ended(design, result)
+        notes.append(in_full)
     if result.is_nested:
         place = result.nesting
         size = size_in_words(place.samples, place.units, place.repeats)
         notes.append(SEVERAL_ROWS.format(size=size))
     notes += filter(None, [result.dataset.attrs.get(ONLY_INSPECTED, ""), why_no_intervals(result)])
-    return notes + result.notes_on_places
+    return brief, notes + result.notes_on_places
 
 
 def why_no_intervals(result: Result) -> str:

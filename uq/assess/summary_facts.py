@@ -17,7 +17,7 @@ from uq.assess.summary import REGIME, Described, Summary, status_counts
 from uq.result.elements import independent_rows
 from uq.result.nesting import nesting_of
 from uq.stats import estimate_json
-from uq.stats.importance_weights import Smoothed, effective_rows, quality, tail_shape
+from uq.stats.importance_weights import ImportanceWeights, effective_rows, quality, tail_shape
 from uq.stats.variance_components import nested_shares
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def summary_facts(summary: Summary, *, of_reports: bool = False) -> Fact:
     )
 
 
-def quality_facts(weights: Smoothed | None) -> dict[str, Fact]:
+def quality_facts(weights: ImportanceWeights | None) -> dict[str, Fact]:
     """Return the effective sample size and the tail shape of weights; nothing without weights."""
     return {
         name: Fact(estimate_json.number(number), (_QUALITY[name],))

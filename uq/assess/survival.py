@@ -7,8 +7,8 @@ import xarray as xr
 
 from uq.assess.failed_rows import outer, with_failed_at
 from uq.assess.integrated_inputs import elements_with_laws
-from uq.assess.population import as_sample
 from uq.assess.sample import Sample
+from uq.assess.weighted_mixture import as_sample
 from uq.contract import Floats
 from uq.result.result import AnyResult, Result
 from uq.stats.intervals import Ends
@@ -69,7 +69,7 @@ def survival(result: AnyResult, output: str, *, plain: bool = False) -> xr.Datas
     wanted = {element.name for element in rows.lifetimes(output)}
     whole = elements_with_laws(rows, [output.partition("[")[0]], plain=plain)
     chosen = [element for element in whole if element.name in wanted]
-    samples = [as_sample(element, rows.replicates) for element in chosen]
+    samples = [as_sample(element, rows.dependence) for element in chosen]
     time = _times(samples)
     lost = any(element.failed.any() for element in chosen)
     curves = [_variables(sample, time, lost) for sample in samples]
@@ -148,7 +148,7 @@ def _variables(sample: Sample, time: Floats, with_failed: bool) -> dict[str, Any
     }
     if with_failed:
         for end, life in (("low", 0.0), ("high", np.inf)):
-            other = as_sample(with_failed_at(element, life), sample.part).survival(time)
+            other = as_sample(with_failed_at(element, life), sample.dependence).survival(time)
             alone = np.isnan(other.low).all() and np.isnan(other.high).all()
             bound = other.survival if alone else getattr(other, end)
             variables[f"failed_{end}"] = outer(end, bound, getattr(curve, end))

@@ -298,7 +298,7 @@ def transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Ind
 INDICES_OF = "indices are of its {form}; ask for {name} for the output itself"
 
 
-def lightened(target: IndexTarget, template: str = INDICES_OF) -> IndexTarget:
+def transformed_if_heavy(target: IndexTarget, template: str = INDICES_OF) -> IndexTarget:
     """Return the transform of a heavy-tailed value, for methods that apportion a variance.
 
     Parameters

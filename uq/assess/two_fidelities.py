@@ -198,9 +198,9 @@ def _estimates(
             controlled = controlled_share(
                 hits, kept, control=control.for_thresholds, many=many.for_thresholds
             )
-            failed = failed_share_bounds(hits, element.failed, None)
+            failed = failed_share_bounds(hits, element.failed)
             note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
-            plain = share_of(hits[kept], None)
+            plain = share_of(hits[kept])
             yield (
                 f"P({sign}{threshold!r})",
                 ControlVariateEstimate(*controlled, plain, failed, note),

@@ -21,7 +21,7 @@ from uq.sampling.dependence import matrix_problem
 from uq.sampling.input_faults import InputFault
 from uq.sampling.truncation import law_problem
 from uq.stats.estimate_json import number
-from uq.stats.importance_weights import Smoothed, effective_rows, tail_shape
+from uq.stats.importance_weights import ImportanceWeights, effective_rows, tail_shape
 from uq.study.changes import change, study_text
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
@@ -42,14 +42,14 @@ class WhatIf:
         The least number of equal rows that those of an output are worth.
     pareto_k : float
         Of the worst weights used.
-    weights : Smoothed
+    weights : ImportanceWeights
         Of the rows, with nothing integrated.
     """
 
     summary: Summary
     effective_rows: float
     pareto_k: float
-    weights: Smoothed
+    weights: ImportanceWeights
 
 
 def what_if(result: AnyResult, changes: Mapping[str, Any]) -> pd.DataFrame:
@@ -125,7 +125,7 @@ def weighting_of(
     rows = result.independent
     old, new = old or inputs_of(rows), _changed(rows, changes)
     _refuse(result, old, new)
-    return Weighting(rows, old, new, rows.replicates)
+    return Weighting(rows, old, new, rows.dependence)
 
 
 def what_if_facts(answered: WhatIf) -> Fact:

@@ -8,7 +8,7 @@ from uq.assess.answer.answer import verdict
 from uq.assess.answer.wording import NumberTarget
 from uq.assess.convergence import convergence_facts, converging
 from uq.assess.findings import Findings
-from uq.assess.fleet import fleet_facts, fleet_of, reasons, the_life
+from uq.assess.fleet import fleet_facts, fleet_of, lifetime_element, reasons
 from uq.assess.fleet_numbers import Banded
 from uq.assess.two_fidelities import twin_facts, with_twin
 from uq.cli.printing import CELLS, cells, grid, heading, note, paragraph, print_json, title
@@ -125,7 +125,7 @@ def fleet(
 ) -> None:
     """Show the first failure time in a fleet, and the number of failures by a time."""
     opened = Result.open(result)
-    units = the_life(opened.independent, output).declared.unit if by else ""
+    units = lifetime_element(opened.independent, output).declared.unit if by else ""
     times = [read_threshold("--by", text, "a life", units) for text in by]
     first_ends = fleet_of(opened, size, times, allow, output, plain=plain)
     if json:

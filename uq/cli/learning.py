@@ -75,17 +75,17 @@ def update(
 def _show(result: Result, answer: Learnt) -> None:
     title(result)
     of_unit: dict[str, list[InputLearnt]] = {}
-    for learnt_input in answer.inputs:
-        of_unit.setdefault(learnt_input.unit, []).append(learnt_input)
+    for posterior_input in answer.inputs:
+        of_unit.setdefault(posterior_input.unit, []).append(posterior_input)
     for unit, inputs in of_unit.items():
         if not unit or len(of_unit) <= MOST_UNITS:
             heading(f"\nInputs of unit {unit}" if unit else "\nInputs that units share")
             grid(_inputs(inputs), header=("", "before", "sd", "after", "error", "sd", ""))
-            for learnt_input in inputs:
-                after = learnt_input.posterior
+            for posterior_input in inputs:
+                after = posterior_input.posterior
                 for moment, estimate in (("mean", after.mean), ("sd", after.sd)):
                     if estimate.reason:
-                        note(f"{learnt_input.name}: no {moment} after: {estimate.reason}.")
+                        note(f"{posterior_input.name}: no {moment} after: {estimate.reason}.")
     if answer.confounded:
         heading("\nConfounded by the inspections", "rank correlation")
         grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in answer.confounded[:5]])
@@ -95,7 +95,7 @@ def _show(result: Result, answer: Learnt) -> None:
         grid([(_inspection_label(gain), f"{gain.bits:.2f}") for gain in most])
     for output in dict.fromkeys(remaining.output for remaining in answer.lives):
         _show_lives([remaining for remaining in answer.lives if remaining.output == output])
-    if any(learnt_input.posterior.mean.has_interval for learnt_input in answer.inputs):
+    if any(posterior_input.posterior.mean.has_interval for posterior_input in answer.inputs):
         note("error: 95 % Monte Carlo error of the mean after.")
     for text in answer.notes:
         note(text)
@@ -115,16 +115,16 @@ def _inspection_label(taught: InformationGain) -> str:
 
 
 def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:
-    for learnt_input in shown:
-        before, after = learnt_input.prior, learnt_input.posterior
-        unit = unit_of(learnt_input.units, before.mean.value)
+    for posterior_input in shown:
+        before, after = posterior_input.prior, posterior_input.posterior
+        unit = unit_of(posterior_input.units, before.mean.value)
         half = (after.mean.high - after.mean.low) / 2 / unit.size
         yield (
-            learnt_input.name.partition("[")[0],
+            posterior_input.name.partition("[")[0],
             *(_digits(x.value / unit.size) for x in (before.mean, before.sd, after.mean)),
             f"{half:.1g}" if isfinite(half) else "-",
             _digits(after.sd.value / unit.size),
-            "" if learnt_input.units == "1" else powers(unit.name),
+            "" if posterior_input.units == "1" else powers(unit.name),
         )
 
 

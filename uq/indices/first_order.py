@@ -16,8 +16,9 @@ from uq.indices.residual_variance import (
     residual_variance,
     variance,
 )
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import NOTHING, Estimate
-from uq.stats.intervals import Replicates, replicates_of_some, upper_probability
+from uq.stats.intervals import upper_probability
 from uq.stats.quantile_functions import student
 
 ENOUGH_ROWS = 200
@@ -70,8 +71,8 @@ def first_order_indices(sample: DesignSample) -> Indices:
     .. [1] S. Da Veiga, F. Gamboa, "Efficient estimation of sensitivity indices", J. Nonparametr.
        Stat. 25, 573-595 (2013).
     """
-    part = sample.replicate
-    if part is not None and len(np.unique(part)) < 2:
+    dependence = sample.dependence
+    if dependence.labels is not None and len(np.unique(dependence.labels)) < 2:
         by_balance = beside_nulls(one_kind(S1, first_order))(sample)
         note = (
             "the rows of one replicate depend on each other: by random balance, too small where"
@@ -82,7 +83,7 @@ def first_order_indices(sample: DesignSample) -> Indices:
     y = sample.values.reshape(len(sample.values), -1)
     y = y - y.mean(axis=0)
     names, lacks_rows = list(sample.inputs), len(y) < ENOUGH_ROWS
-    values, products, widest, widest_sum = _shares(sample.inputs, y, part)
+    values, products, widest, widest_sum = _shares(sample.inputs, y, dependence)
 
     def unexplained(quantile: float) -> Estimate:
         """Return 1 minus the sum of all indices, with its interval."""
@@ -116,7 +117,7 @@ def first_order_indices(sample: DesignSample) -> Indices:
             )
     nulls = {}
     if lacking and sample.nulls and len(np.unique(y)) == 2:
-        nulls = {S1: null_of(_without_effect(y, part), len(names))}
+        nulls = {S1: null_of(_without_effect(y, dependence), len(names))}
     factors = dict.fromkeys(lacking, ENOUGH_ROWS / len(y)) if lacks_rows else {}
     return Indices(
         {S1: indices},
@@ -128,18 +129,16 @@ def first_order_indices(sample: DesignSample) -> Indices:
     )
 
 
-def _without_effect(y: Floats, part: Replicates) -> Floats:
+def _without_effect(y: Floats, dependence: Dependence) -> Floats:
     """Return first-order indices of inputs without effect (null distribution)."""
-    every = variance(y, part)
+    every = variance(y, dependence)
     orders = np.random.default_rng(0).random((DUMMIES, len(y))).argsort(axis=1)
-    left = [
-        ordered_residual_variance(y[order], replicates_of_some(part, order)) for order in orders
-    ]
+    left = [ordered_residual_variance(y[order], dependence[order]) for order in orders]
     return 1 - np.array(left) / every
 
 
 def _shares(
-    columns: Mapping[str, Floats], y: Floats, part: Replicates
+    columns: Mapping[str, Floats], y: Floats, dependence: Dependence
 ) -> tuple[Floats, Floats, Floats, list[float]]:
     """Return the indices of k inputs, with the covariance matrix of their errors.
 
@@ -153,11 +152,11 @@ def _shares(
     widest_sum : list of float
         The same change for both ends of the share that no single input explains.
     """
-    n, every = len(y), variance(y, part)
+    n, every = len(y), variance(y, dependence)
     squares = np.sum(y**2, axis=1)
     values, influences, noises = [], [], []
     for column in columns.values():
-        left = residual_variance(column, y, part)
+        left = residual_variance(column, y, dependence)
         value = 1 - max(left.variance, 0.0) / every  # the estimate may be negative near a jump
         influence = (left.squares - (1 - value) * squares) / every
         influence -= influence.mean()

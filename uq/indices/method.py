@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Mask
 from uq.indices.index import IndexKind, Indices, RefusedError
 from uq.sampling.designs import PLAIN, Layout
-from uq.stats.intervals import CONFIDENCE, Replicates, is_constant, replicates_of_some, sized
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
+from uq.stats.intervals import CONFIDENCE, is_constant, sized
 from uq.text.numbers import counted
 
 NO_EFFECT = "the same value in all rows: nothing depends on the inputs"
@@ -56,8 +57,8 @@ class DesignSample:
         Confidence level of the intervals.
     nulls : bool
         Whether to estimate indices of inputs without effect for comparison.
-    replicate : ndarray of int, shape (n,), optional
-        Replicate of each row of a plain sample; None if rows are independent.
+    dependence : Dependence, optional
+        Of the rows of a plain sample.
     difference : tuple of str, optional
         Two inputs; the difference of their indices is also estimated, with label ``"x1 - x2"``.
     """
@@ -74,7 +75,7 @@ class DesignSample:
     quantiles: Mapping[str, float] = field(default_factory=dict)
     confidence: float = CONFIDENCE
     nulls: bool = True
-    replicate: Replicates = None
+    dependence: Dependence = INDEPENDENT
     difference: tuple[str, str] | None = None
 
     @classmethod
@@ -105,7 +106,7 @@ class DesignSample:
             values=self.values[kept],
             inputs={name: column[kept] for name, column in self.inputs.items()},
             groups=alone(len(kept)),
-            replicate=replicates_of_some(self.replicate, kept),
+            dependence=self.dependence[kept],
         )
 
 

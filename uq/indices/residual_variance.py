@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
-from uq.stats.intervals import Replicates, replicates_of_some
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 
 LEAST_LAGS = 8
 """Minimum number of lags; with fewer, the intercept of a parabola is too noisy."""
@@ -44,21 +44,21 @@ class Residual(NamedTuple):
     excess: float
 
 
-def variance(y: Floats, part: Replicates = None) -> float:
+def variance(y: Floats, dependence: Dependence = INDEPENDENT) -> float:
     """Return the unbiased variance, summed over elements.
 
     Parameters
     ----------
     y : ndarray, shape (n, e)
-    part : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
         Only rows of different replicates are compared, since rows of one replicate may be
         dependent.
     """
     pairs, total = float(len(y)) ** 2, _pair_sum(y)
-    if part is None:
+    if dependence.labels is None:
         return total / (pairs - len(y))
-    for number in np.unique(part):
-        rows = y[part == number]
+    for number in np.unique(dependence.labels):
+        rows = y[dependence.labels == number]
         pairs, total = pairs - float(len(rows)) ** 2, total - _pair_sum(rows)
     return total / pairs if pairs > 0 else np.nan
 
@@ -68,22 +68,22 @@ def _pair_sum(y: Floats) -> float:
     return float(len(y) * np.sum((y - y.mean(axis=0)) ** 2))
 
 
-def ordered_residual_variance(y: Floats, part: Replicates = None) -> float:
+def ordered_residual_variance(y: Floats, dependence: Dependence = INDEPENDENT) -> float:
     """Estimate the residual variance without its error terms, from rows sorted by an input.
 
     The input has no ties.
     """
-    return variance(y, part) if len(y) <= 2 * LEAST_LAGS else _extrapolated(y, part)[2]
+    return variance(y, dependence) if len(y) <= 2 * LEAST_LAGS else _extrapolated(y, dependence)[2]
 
 
-def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual:
+def residual_variance(x: Floats, y: Floats, dependence: Dependence = INDEPENDENT) -> Residual:
     """Estimate the residual variance of an output given one input, E[Var(y | x)].
 
     Parameters
     ----------
     x : ndarray, shape (n,)
     y : ndarray, shape (n, e)
-    part : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
 
     Returns
     -------
@@ -119,9 +119,9 @@ def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual
     rest = order[np.repeat(~shared, counts)]
     if len(rest) <= 2 * LEAST_LAGS:  # too few rows for lags: one group, independent of their values
         alike, rest = [*alike, rest], rest[:0]
-    residuals = [(rows, _of_equal(y[rows], replicates_of_some(part, rows))) for rows in alike]
+    residuals = [(rows, _of_equal(y[rows], dependence[rows])) for rows in alike]
     if len(rest):
-        residuals.append((rest, _of_neighbours(y[rest], replicates_of_some(part, rest))))
+        residuals.append((rest, _of_neighbours(y[rest], dependence[rest])))
     residuals = [(rows, left) for rows, left in residuals if np.isfinite(left.variance)]
     kept = sum(len(rows) for rows, _ in residuals)
     squares = np.zeros(len(y))
@@ -135,29 +135,29 @@ def residual_variance(x: Floats, y: Floats, part: Replicates = None) -> Residual
     return Residual(total, squares, noise, excess)
 
 
-def _of_equal(y: Floats, part: Replicates) -> Residual:
+def _of_equal(y: Floats, dependence: Dependence) -> Residual:
     """Return the residual variance of rows with the same value of the input."""
     n = len(y)
     if n < 2:
         return Residual(np.nan, np.zeros(n), 0.0, 0.0)
     squares = np.sum((y - y.mean(axis=0)) ** 2, axis=1) * (n / (n - 1))
     level = float(squares.mean())
-    return Residual(variance(y, part), squares, 2 * level**2 / (n - 1), 4 * level**2 / n)
+    return Residual(variance(y, dependence), squares, 2 * level**2 / (n - 1), 4 * level**2 / n)
 
 
-def _of_neighbours(y: Floats, part: Replicates) -> Residual:
+def _of_neighbours(y: Floats, dependence: Dependence) -> Residual:
     """Return the residual variance of rows sorted by the input."""
-    number, lags, left, bend = _extrapolated(y, part)
+    number, lags, left, bend = _extrapolated(y, dependence)
     squares, local, smoothed = _squared_residuals(y, number, left)
     noise = len(y) * bend
     for lag, weight in zip(lags, _weights(lags), strict=True):
         products = float(squares[lag:] @ squares[:-lag]) / (len(y) - lag)
-        noise += weight**2 * products / _used(part, lag)
+        noise += weight**2 * products / _used(dependence, lag)
     excess = 4 * float(np.mean(squares * local / (smoothed + 1)))
     return Residual(left, squares * _times_used(lags, len(y)), noise, excess)
 
 
-def _extrapolated(y: Floats, part: Replicates) -> tuple[int, tuple[int, ...], float, float]:
+def _extrapolated(y: Floats, dependence: Dependence) -> tuple[int, tuple[int, ...], float, float]:
     """Return the residual variance extrapolated to lag zero.
 
     Returns
@@ -171,12 +171,12 @@ def _extrapolated(y: Floats, part: Replicates) -> tuple[int, tuple[int, ...], fl
     bend : float
         Squared change of the estimate by fewer lags, beyond the noise.
     """
-    number = _number_of_lags(y, part)
-    lags = _lags(number, len(y), part)
+    number = _number_of_lags(y, dependence)
+    lags = _lags(number, len(y), dependence)
     if len(lags) < _FEWEST_LAGS:
         return number, lags, np.nan, 0.0
-    halves = np.array([_half_square(y, part, lag) for lag in lags])
-    lags, bend = _unbent(y, part, lags, halves)
+    halves = np.array([_half_square(y, dependence, lag) for lag in lags])
+    lags, bend = _unbent(y, dependence, lags, halves)
     left = float(np.array(_weights(lags)) @ halves[: len(lags)])
     return min(number, len(lags)), lags, left, bend
 
@@ -196,12 +196,12 @@ def _times_used(lags: tuple[int, ...], rows: int) -> Floats:
     return np.cumsum(changes)
 
 
-def _lags(number: int, rows: int, part: Replicates) -> tuple[int, ...]:
+def _lags(number: int, rows: int, dependence: Dependence) -> tuple[int, ...]:
     """Return the first lags at which enough pairs are from different replicates."""
-    if part is None:
+    if dependence.is_none:
         return tuple(range(1, number + 1))
     lags = range(1, min(3 * number, rows // 3) + 1)
-    usable = (lag for lag in lags if _used(part, lag) >= _LEAST_PAIRED)
+    usable = (lag for lag in lags if _used(dependence, lag) >= _LEAST_PAIRED)
     return tuple(islice(usable, number))
 
 
@@ -213,20 +213,21 @@ def _weights(lags: tuple[int, ...]) -> tuple[float, ...]:
     return tuple(fitted[0].tolist())
 
 
-def _intercept(y: Floats, part: Replicates, lags: tuple[int, ...]) -> float:
+def _intercept(y: Floats, dependence: Dependence, lags: tuple[int, ...]) -> float:
     if len(lags) < _FEWEST_LAGS:
         return np.nan
     weights = zip(lags, _weights(lags), strict=True)
-    return float(sum(weight * _half_square(y, part, lag) for lag, weight in weights))
+    return float(sum(weight * _half_square(y, dependence, lag) for lag, weight in weights))
 
 
-def _used(part: Replicates, lag: int) -> float:
+def _used(dependence: Dependence, lag: int) -> float:
     """Return the share of pairs of rows at this lag that are from different replicates."""
-    return 1.0 if part is None else float(np.mean(part[lag:] != part[:-lag]))
+    labels = dependence.labels
+    return 1.0 if labels is None else float(np.mean(labels[lag:] != labels[:-lag]))
 
 
 def _unbent(
-    y: Floats, part: Replicates, lags: tuple[int, ...], halves: Floats
+    y: Floats, dependence: Dependence, lags: tuple[int, ...], halves: Floats
 ) -> tuple[tuple[int, ...], float]:
     """Return the lags, halved until they follow a parabola (Lepskii's method), and the change.
 
@@ -240,7 +241,7 @@ def _unbent(
     .. [1] O. V. Lepskii, "On a problem of adaptive estimation in Gaussian white noise", Theory
        Probab. Appl. 35, 454-466 (1991).
     """
-    used = np.array([_used(part, lag) for lag in lags])
+    used = np.array([_used(dependence, lag) for lag in lags])
     steps = np.sum((y[1:] - y[:-1]) ** 2, axis=1) / 2
     product = float(np.mean(steps[2:] * steps[:-2]))  # product of neighbouring variances
     bend = 0.0
@@ -256,28 +257,28 @@ def _unbent(
     return lags, bend
 
 
-def _half_square(y: Floats, part: Replicates, lag: int) -> float:
+def _half_square(y: Floats, dependence: Dependence, lag: int) -> float:
     """Return half the mean squared difference of rows at this lag (empirical semivariogram)."""
-    steps = y[lag:] - y[:-lag]
-    if part is None:  # the rows at both ends count twice, in place of missing pairs
+    steps, labels = y[lag:] - y[:-lag], dependence.labels
+    if labels is None:  # the rows at both ends count twice, in place of missing pairs
         first, last = steps[:lag].ravel(), steps[-lag:].ravel()
         ends = (first @ first + last @ last) / 2
         return float((steps.ravel() @ steps.ravel() + ends) / (2 * len(y)))
     counts = np.ones(len(steps))
     counts[:lag] += 0.5
     counts[-lag:] += 0.5
-    counts *= part[lag:] != part[:-lag]
+    counts *= labels[lag:] != labels[:-lag]
     return float(counts @ np.sum(steps**2, axis=1) / (2 * counts.sum()))
 
 
-def _number_of_lags(y: Floats, part: Replicates) -> int:
+def _number_of_lags(y: Floats, dependence: Dependence) -> int:
     n = len(y)
     most = int(max(min(n // 8, 1.2 * n**0.55, _MOST_LAGS), LEAST_LAGS))
-    every = variance(y, part)
+    every = variance(y, dependence)
     if not every > 0:
         return LEAST_LAGS
     pilot = min(12, most)
-    left = max(_intercept(y, part, _lags(pilot, n, part)) / every, 1e-6)
+    left = max(_intercept(y, dependence, _lags(pilot, n, dependence)) / every, 1e-6)
     if np.isnan(left):
         return LEAST_LAGS
     explained = max(1 - left, 3 * max(left, 1e-3) / np.sqrt(n * pilot))

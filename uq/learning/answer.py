@@ -9,8 +9,8 @@ from unicodedata import normalize
 import numpy as np
 
 from uq.assess.fact import Fact
-from uq.assess.population import Population
 from uq.assess.summary_facts import quality_facts
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.errors import InputError
 from uq.learning.inspections import Inspection
 from uq.learning.posterior import InformationGain, Posterior, information_gains, posterior
@@ -29,7 +29,7 @@ from uq.result.result import AnyResult, Result
 from uq.result.weights import MODEL_ERROR
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import Smoothed, effective_rows
+from uq.stats.importance_weights import ImportanceWeights, effective_rows
 from uq.stats.weighted_means import moments_of_rows
 from uq.text.numbers import percent
 
@@ -41,7 +41,7 @@ class Learnt:
     Attributes
     ----------
     inspections : list of Inspection
-    worst : Smoothed
+    worst : ImportanceWeights
         The least reliable weights, among all inspected units and the units never inspected.
     inputs : list of InputLearnt
     confounded : list of Confounded
@@ -54,7 +54,7 @@ class Learnt:
     """
 
     inspections: list[Inspection]
-    worst: Smoothed
+    worst: ImportanceWeights
     inputs: list[InputLearnt]
     confounded: list[Confounded]
     lives: list[Remaining]
@@ -188,7 +188,7 @@ def learnt_facts(summary: Learnt) -> Fact:
                 remaining_life.effective_rows, (posterior, remaining, effective_rows)
             ),
         }
-        return fact(members, (posterior, remaining, Population))
+        return fact(members, (posterior, remaining, WeightedMixture))
 
     units: dict[str, dict[str, Any]] = {}
     for remaining_life in summary.lives:
@@ -200,12 +200,12 @@ def learnt_facts(summary: Learnt) -> Fact:
     members = quality | {
         "inspections": len(summary.inspections),
         "inputs": {
-            learnt_input.name: {
-                "units": learnt_input.units,
-                "prior": spread(learnt_input.prior),
-                "posterior": spread(learnt_input.posterior),
+            posterior_input.name: {
+                "units": posterior_input.units,
+                "prior": spread(posterior_input.prior),
+                "posterior": spread(posterior_input.posterior),
             }
-            for learnt_input in summary.inputs
+            for posterior_input in summary.inputs
         },
         "confounded": fact(
             [

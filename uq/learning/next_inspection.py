@@ -158,9 +158,9 @@ def _rough(observable: Observable, time: float | None, weights: Floats) -> Itera
     if observable.depths is None or time is None:
         return
     everyone, last = np.arange(len(weights)), observable.depths.depths[-1]
-    longer = np.ones((len(weights), 1))
-    unknown = observable.truth(time, everyone, longer) > last
-    unknown |= observable.open_depth(time, everyone, longer)
+    life_factor = np.ones((len(weights), 1))
+    unknown = observable.truth(time, everyone, life_factor) > last
+    unknown |= observable.open_depth(time, everyone, life_factor)
     share = float(np.average(unknown[:, 0], weights=weights))
     why = (
         f"by {beside(number(time), observable.time_unit)}, {percent(share)} of the rows have worn"

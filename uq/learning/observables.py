@@ -141,7 +141,7 @@ class Observable:
         """Of its values."""
         return self.declared.unit
 
-    def truth(self, time: float | None, rows: NDArray[np.intp], longer: Floats) -> Floats:
+    def truth(self, time: float | None, rows: NDArray[np.intp], life_factor: Floats) -> Floats:
         """Return the true value of the observable at an inspection.
 
         Parameters
@@ -149,7 +149,7 @@ class Observable:
         time : float or None
             Of the inspection, in `time_unit`.
         rows : ndarray of int, shape (n,)
-        longer : ndarray, shape (n, g)
+        life_factor : ndarray, shape (n, g)
             Factors that lengthen the computed lives of these rows.
 
         Returns
@@ -159,10 +159,12 @@ class Observable:
         if self.depths is not None:
             assert time is not None
             chosen = WornDepths(self.depths.depths, self.depths.lives[rows])
-            return chosen.at(time / longer)
+            return chosen.at(time / life_factor)
         values = self.values[rows, None]
         return (
-            values * longer if self.declared.is_lifetime else np.broadcast_to(values, longer.shape)
+            values * life_factor
+            if self.declared.is_lifetime
+            else np.broadcast_to(values, life_factor.shape)
         )
 
     def log_likelihood(self, inspection: Inspection, truth: Floats, model_cv: float) -> Floats:
@@ -179,7 +181,7 @@ class Observable:
         return inspection.value + (truth - inspection.value + turn / 2) % turn - turn / 2
 
     def bounded(
-        self, inspection: Inspection, rows: NDArray[np.intp], longer: Floats, model_cv: float
+        self, inspection: Inspection, rows: NDArray[np.intp], life_factor: Floats, model_cv: float
     ) -> Mask:
         """Return the mask of values whose bounds do not determine the likelihood, shape (n, g).
 
@@ -188,20 +190,20 @@ class Observable:
         """
         if self.depths is not None:
             assert inspection.time is not None
-            least = self.truth(inspection.time, rows, longer)
+            least = self.truth(inspection.time, rows, life_factor)
             both = (least, np.broadcast_to(self._most(rows)[:, None], least.shape))
             first, last = (np.exp(self.log_likelihood(inspection, end, model_cv)) for end in both)
             differ = np.abs(first - last) > _SAME * np.maximum(first, last)
-            return differ & self.open_depth(inspection.time, rows, longer)
+            return differ & self.open_depth(inspection.time, rows, life_factor)
         most = (inspection.time or 0.0) if inspection.kind in OUTCOMES else reach(inspection)
-        return self.censored[rows, None] & (self.values[rows, None] * longer < most)
+        return self.censored[rows, None] & (self.values[rows, None] * life_factor < most)
 
-    def open_depth(self, time: float, rows: NDArray[np.intp], longer: Floats) -> Mask:
+    def open_depth(self, time: float, rows: NDArray[np.intp], life_factor: Floats) -> Mask:
         """Return the mask of depths at a time that are only bounded, shape (n, g)."""
         assert self.depths is not None
         lives = self.depths.lives[rows]
         last = np.where(np.isfinite(lives), lives, 0.0).max(axis=1, keepdims=True)
-        return (time / longer > last) & self.depths.settled[rows, None]
+        return (time / life_factor > last) & self.depths.settled[rows, None]
 
     def _most(self, rows: NDArray[np.intp]) -> Floats:
         """Return an upper bound of the depth of each row, from its lives, shape (n,)."""

@@ -19,7 +19,8 @@ from uq.learning.scale_posterior import SharedLaw, shared_law
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.result.result import Result
 from uq.sampling.levels import SHARED
-from uq.stats.importance_weights import Smoothed
+from uq.stats.dependent_rows import INDEPENDENT
+from uq.stats.importance_weights import ImportanceWeights
 
 _WHOLE = "no row of this result agrees with"
 
@@ -132,15 +133,15 @@ class Posterior:
         return self.likelihoods.not_integrated
 
     @property
-    def weights(self) -> list[Smoothed]:
+    def weights(self) -> list[ImportanceWeights]:
         """Weights for uninspected units and for each inspected unit."""
         return [self.any_unit.weights, *(weighted.weights for weighted in self.units.values())]
 
     @property
-    def pulls(self) -> Floats:
+    def influence(self) -> Floats:
         """Influence of each row on the shared law, shape (n, terms)."""
         total = sum(
-            weighted.pulls for weighted in self.units.values() if weighted.pulls is not None
+            weighted.influence for weighted in self.units.values() if weighted.influence is not None
         )
         return np.asarray(total - np.mean(total, axis=0))
 
@@ -177,9 +178,9 @@ def posterior(rows: Result, inspections: Sequence[Inspection], model_cv: float =
     scale, world, importance = likelihoods.scale, likelihoods.world, likelihoods.importance
     several = likelihoods.worlds > 1
     law = shared_law(evidence) if likelihoods.shares_scale and not several else None
-    part = rows.replicates if several or place.repeats > 1 else None
+    dependence = rows.dependence if several or place.repeats > 1 else INDEPENDENT
     units = {
-        label: inspected(unit, evidence, likelihoods, part, law)
+        label: inspected(unit, evidence, likelihoods, dependence, law)
         for unit, label in enumerate(likelihoods.labels)
     }
     logs, only_inspected = evidence.log_worlds[world], ""
@@ -193,7 +194,7 @@ def posterior(rows: Result, inspections: Sequence[Inspection], model_cv: float =
             logs = apart
         else:
             only_inspected = NO_OTHERS.format(len(units) + 1)
-    any_unit = uninspected(logs, evidence, likelihoods, place, rows.replicates, law)
+    any_unit = uninspected(logs, evidence, likelihoods, place, rows.dependence, law)
     return Posterior(any_unit, units, evidence, likelihoods, law, only_inspected)
 
 

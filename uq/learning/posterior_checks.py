@@ -11,7 +11,7 @@ from uq.learning.likelihood import drawn_measurement
 from uq.learning.posterior import Posterior
 from uq.learning.rows_as_units import WeightedRows
 from uq.learning.unit_likelihood import UnitLikelihoods
-from uq.stats.importance_weights import DOUBTFUL, refusal, rows_to_carry_little
+from uq.stats.importance_weights import DOUBTFUL, refusal, rows_to_be_negligible
 from uq.stats.weighted_means import FEW
 from uq.text.numbers import percent
 
@@ -148,7 +148,7 @@ def _why(weighted: WeightedRows) -> str:
     weights = weighted.weights
     several = "rows" if weights.rows == len(weighted.rows) else "samples"
     if why := refusal(weights.k, weights.rows, HOPELESS):
-        more = rows_to_carry_little(weights.most) - weights.rows
+        more = rows_to_be_negligible(weights.most) - weights.rows
         if weights.k < DOUBTFUL or more > _MODERATE * weights.rows:
             return why
         return f"single rows may carry over 1 % of the weight: add {_rounded_up(more)} {several}"

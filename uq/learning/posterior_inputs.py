@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.assess.row_inputs import inputs_of
-from uq.assess.scale_laws import learnt_input, moments_of_input
+from uq.assess.scale_laws import moments_of_input, posterior_input
 from uq.contract import Floats
 from uq.learning.importance import importance_of
 from uq.learning.posterior_result import every_unit, prior_of
@@ -15,7 +15,7 @@ from uq.result.result import Result
 from uq.result.weights import WEIGHT
 from uq.sampling.levels import SHARED
 from uq.stats.estimate import Estimate
-from uq.stats.weighted_means import moments_of_rows, trusted
+from uq.stats.weighted_means import if_reliable, moments_of_rows
 
 QUANTILES = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 
@@ -153,12 +153,12 @@ def _before(values: Floats, weights: Floats, asked: tuple[float, ...]) -> Poster
 
 def _after(result: Result, name: str, asked: tuple[float, ...]) -> PosteriorMoments:
     values, weights = result.dataset[name].values, result.dataset[WEIGHT].values
-    part, of_rows, within = result.replicates, values, np.zeros(len(values))
-    if name == learnt_input(result):
+    dependence, of_rows, within = result.dependence, values, np.zeros(len(values))
+    if name == posterior_input(result):
         of_rows, within = moments_of_input(result, inputs_of(result))
-    mean, sd = moments_of_rows(of_rows, weights, part, within)
-    mean = trusted(mean, weights * of_rows, part, hopeless=_FEW_ROWS)
-    sd = trusted(sd, weights * (of_rows**2 + within), part, hopeless=_FEW_ROWS)
+    mean, sd = moments_of_rows(of_rows, weights, dependence, within)
+    mean = if_reliable(mean, weights * of_rows, dependence, hopeless=_FEW_ROWS)
+    sd = if_reliable(sd, weights * (of_rows**2 + within), dependence, hopeless=_FEW_ROWS)
     return PosteriorMoments(mean, sd, quantiles(values, weights, asked))
 
 

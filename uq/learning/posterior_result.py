@@ -24,9 +24,9 @@ from uq.result.weights import (
     INSPECTED,
     INSPECTIONS,
     INTEGRATED,
-    LAW_FOLLOWS,
-    LAW_PULLS,
+    LAW_INFLUENCE,
     LAW_SCORES,
+    LAW_TERMS,
     LEDGER,
     MODEL_ERROR,
     MOST,
@@ -36,8 +36,8 @@ from uq.result.weights import (
     ROWS,
     SCALE_SCORES,
     SCORE,
+    UNIT_INFLUENCE,
     UNIT_MOST,
-    UNIT_PULLS,
     UNIT_SCALE,
     UNIT_SCORES,
     UNIT_WEIGHT,
@@ -45,11 +45,11 @@ from uq.result.weights import (
     WORLDS,
 )
 from uq.sampling.truncation import cdf_within
-from uq.stats.importance_weights import Smoothed
+from uq.stats.importance_weights import ImportanceWeights
 from uq.text.numbers import counted
 
 PRIOR = "prior_"
-_LAW = (LAW_PULLS, UNIT_PULLS, LAW_FOLLOWS, LAW_SCORES)
+_LAW = (LAW_INFLUENCE, UNIT_INFLUENCE, LAW_TERMS, LAW_SCORES)
 _WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_MOST, UNIT_SCALE, UNIT_SCORES, *_LAW)
 _NESTING = ("world", "unit", "repeat")
 _COMPRESSED = {"zlib": True, "complevel": 1}
@@ -138,7 +138,7 @@ def as_result(
     }
     for name, variable in dataset.variables.items():
         variable.encoding["_FillValue"] = None
-        if name in (UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_PULLS):
+        if name in (UNIT_WEIGHT, UNIT_SCALE, UNIT_SCORES, UNIT_INFLUENCE):
             variable.encoding |= _COMPRESSED
     return dataset.assign_attrs(new_attrs)
 
@@ -147,15 +147,22 @@ def _of_law(posterior: Posterior, scale: str, attrs: dict[str, Any]) -> dict[str
     """Return the variables of the law of an input that all units share."""
     if (law := posterior.law) is None:
         return {}
-    pulls = posterior.pulls
-    of_pulls = attrs | {"long_name": f"pull on terms of the law of {scale}", ROWS: len(pulls)}
+    influence = posterior.influence
+    influence_attrs = attrs | {
+        "long_name": f"pull on terms of the law of {scale}",
+        ROWS: len(influence),
+    }
     of_terms = attrs | {"long_name": "terms in the row"}
     of_scores = attrs | {"long_name": f"normal score before, of {scale}"}
-    units = np.stack([unit.without_own(pulls) for unit in posterior.units.values()])
+    units = np.stack([unit.without_own(influence) for unit in posterior.units.values()])
     return {
-        LAW_PULLS: (("row", "term"), posterior.any_unit.without_own(pulls), of_pulls),
-        UNIT_PULLS: (("inspected", "row", "term"), units, of_pulls),
-        LAW_FOLLOWS: (("row", "term"), posterior.any_unit.terms, of_terms),
+        LAW_INFLUENCE: (
+            ("row", "term"),
+            posterior.any_unit.without_own(influence),
+            influence_attrs,
+        ),
+        UNIT_INFLUENCE: (("inspected", "row", "term"), units, influence_attrs),
+        LAW_TERMS: (("row", "term"), posterior.any_unit.terms, of_terms),
         LAW_SCORES: (SCORE, law.scores, of_scores),
     }
 
@@ -223,7 +230,7 @@ def as_unit(result: AnyResult, label: str) -> xr.Dataset:
             law = result.dataset[UNIT_SCORES]
             attrs = law.attrs | {INPUT: name}
             rows = rows.assign({SCALE_SCORES: (law.dims[1:], law.values[place], attrs)})
-        if LAW_PULLS in result.dataset:
+        if LAW_INFLUENCE in result.dataset:
             rows = rows.assign(_law_of_unit(result, Result(rows), place))
     if result.dataset.attrs[WORLDS] == 1 and prior.nesting.repeats == 1:
         # Rows of one sample share nothing: each has a separate value of the integrated input.
@@ -237,11 +244,11 @@ def as_unit(result: AnyResult, label: str) -> xr.Dataset:
 def _law_of_unit(result: Result, rows: Result, place: int) -> dict[str, Any]:
     """Return the variables of the shared law for the rows of a unit."""
     name, inputs = result.dataset.attrs[INTEGRATED], inputs_of(rows)
-    law, pulls = result.dataset[LAW_SCORES], result.dataset[UNIT_PULLS]
+    law, influence = result.dataset[LAW_SCORES], result.dataset[UNIT_INFLUENCE]
     below = cdf_within(inputs.laws[name], rows.dataset[name].values, inputs.bounds[name])
     return {
-        LAW_PULLS: (pulls.dims[1:], pulls.values[place], pulls.attrs),
-        LAW_FOLLOWS: (pulls.dims[1:], terms_at(law.values, ndtri(below))),
+        LAW_INFLUENCE: (influence.dims[1:], influence.values[place], influence.attrs),
+        LAW_TERMS: (influence.dims[1:], terms_at(law.values, ndtri(below))),
         LAW_SCORES: law,
     }
 
@@ -305,6 +312,6 @@ def _rescaled(rows: Result, name: str, values: Floats) -> dict[str, xr.DataArray
     return rescaled
 
 
-def unit_quality(result: Result) -> list[Smoothed]:
+def unit_quality(result: Result) -> list[ImportanceWeights]:
     """Return the weights of a posterior, for uninspected units and each inspected unit."""
     return [weights for _, rows in every_unit(result) if (weights := rows.weights) is not None]

@@ -7,8 +7,8 @@ from math import inf
 import numpy as np
 
 from uq.assess.integrated_inputs import elements_with_laws, inputs_of
-from uq.assess.population import Population
 from uq.assess.scale_laws import ConditionalLaw
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.contract import Floats, Output
 from uq.errors import InputError, choices
 from uq.learning.inspections import Inspection, InspectionKind
@@ -20,9 +20,9 @@ from uq.result.elements import Element
 from uq.result.result import Result
 from uq.result.weights import INSPECTED, INTEGRATED, ONLY_INSPECTED, WEIGHT, WORLDS
 from uq.sampling.levels import SHARED
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import effective_rows, per_sample
-from uq.stats.intervals import Replicates, replicates_of_some
+from uq.stats.importance_weights import effective_rows
 from uq.text.quantities import read_threshold
 
 ENDS = (0.025, 0.975)
@@ -61,13 +61,13 @@ def over_shared(result: Result, element: Element, seen: float, time: float) -> d
     if exponent is None:
         return {}
     shared, weights = result.dataset[name].values, result.dataset[WEIGHT].values
-    longer = shared**exponent
-    latest = time * longer / longer.min()
+    life_factor = shared**exponent
+    latest = time * life_factor / life_factor.min()
     if (element.censored & (element.values < latest)).any():
         return {}
     present = element.present
-    lives = element.values[present] / longer[present]  # with a shared input of 1
-    before, by = (_below(lives, weights[present], at / longer) for at in (seen, time))
+    lives = element.values[present] / life_factor[present]  # with a shared input of 1
+    before, by = (_below(lives, weights[present], at / life_factor) for at in (seen, time))
     with np.errstate(divide="ignore", invalid="ignore"):
         ended = (by - before) / (1 - before)
     runs = before < 1
@@ -201,21 +201,21 @@ def _of_unit(
 ) -> Iterator[Remaining]:
     thresholds = rows.analysis.thresholds
     counted = rows.dataset[WEIGHT].values > 0
-    part = replicates_of_some(rows.replicates, counted)
+    dependence = rows.dependence[counted]
     rows = rows.take(counted)
     for element in elements_with_laws(rows, [name for name, _ in shown_lives(rows)]):
         seen = last_seen.get(element.units, 0.0)
         times = [*by] or [t for t in thresholds.get(element.output, ()) if t > seen]
-        life = _of_life(element, part, label, seen, times)
+        life = _of_life(element, dependence, label, seen, times)
         later = [time for time in life.by if time > seen and label == ANY]
         ranges = {time: over_shared(rows, element, seen, time) for time in later}
         yield replace(life, over_shared={t: interval for t, interval in ranges.items() if interval})
 
 
 def _of_life(
-    element: Element, part: Replicates, label: str, seen: float, times: Sequence[float]
+    element: Element, dependence: Dependence, label: str, seen: float, times: Sequence[float]
 ) -> Remaining:
-    runs = Population(element, part).outliving(seen) if seen > 0 else Estimate(1.0)
+    runs = WeightedMixture(element, dependence).outliving(seen) if seen > 0 else Estimate(1.0)
     assert element.weights is not None
     alive = np.where(element.censored & (element.values <= seen), 0.0, element.above(seen))
     weights, still = element.weights * alive, alive > 0
@@ -232,12 +232,12 @@ def _of_life(
         weights=weights,
         most=element.most * still.mean() / share,
     )
-    survivors = Population(running, part)
+    survivors = WeightedMixture(running, dependence)
     return replace(
         nothing,
         life={p: _after(seen, survivors.quantile(p)) for p in PROBABILITIES},
         by={time: survivors.below(time) if time > seen else Estimate(0.0) for time in times},
-        effective_rows=effective_rows(per_sample(weights[still], replicates_of_some(part, still))),
+        effective_rows=effective_rows(dependence[still].sums_of_samples(weights[still])),
     )
 
 

@@ -16,14 +16,14 @@ from uq.learning.scale_posterior import (
     edges_of_rows,
     in_order,
     in_order_of_weight,
+    influence_of,
     masses,
     prior_places,
-    pulls_of,
 )
 from uq.learning.unit_likelihood import UnitLikelihoods
 from uq.result.nesting import Nesting
-from uq.stats.importance_weights import Smoothed, smoothed
-from uq.stats.intervals import Replicates, replicates_of_some
+from uq.stats.dependent_rows import Dependence
+from uq.stats.importance_weights import ImportanceWeights, smoothed
 
 Places = NDArray[np.integer]
 
@@ -93,32 +93,32 @@ class WeightedRows:
     Attributes
     ----------
     rows : ndarray of int, shape (m,)
-    weights : Smoothed
+    weights : ImportanceWeights
     scale : ndarray, shape (m,), or None
         Value of the integrated input in each row.
     scores : ndarray, shape (m, q), or None
-        Its law in each row of an inspected unit (`LearntScale`).
+        Its law in each row of an inspected unit (`PosteriorScale`).
     terms : ndarray, shape (m, terms), or None
         Terms of an input shared by all units, averaged over its law in each row.
-    pulls : ndarray, shape (m, terms), or None
+    influence : ndarray, shape (m, terms), or None
         Influence of each row, as an inspected unit, on that law.
     """
 
     rows: NDArray[np.intp]
-    weights: Smoothed
+    weights: ImportanceWeights
     scale: Floats | None
     scores: Floats | None = None
     terms: Floats | None = None
-    pulls: Floats | None = None
+    influence: Floats | None = None
 
-    def without_own(self, pulls: Floats) -> Floats:
+    def without_own(self, influence: Floats) -> Floats:
         """Return the influence of each row on the law used by other rows, shape (n, terms).
 
         The influence of a row on itself, and the effect of values stratified over the law, are
         excluded.
         """
         assert self.terms is not None
-        adjusted = pulls.copy()
+        adjusted = influence.copy()
         adjusted[self.rows] -= self.weights.weights[:, None] * self.terms
         return adjusted
 
@@ -128,7 +128,7 @@ def uninspected(
     evidence: Evidence,
     likelihoods: UnitLikelihoods,
     place: Nesting,
-    part: Replicates,
+    dependence: Dependence,
     law: SharedLaw | None,
 ) -> WeightedRows:
     """Return all rows, weighted as uninspected units of the same world as the inspected ones.
@@ -137,24 +137,24 @@ def uninspected(
     """
     rows, scale = np.arange(len(log_rows)), likelihoods.scale
     if scale is None or scale.is_own:
-        weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, part)
+        weights = _smoothed_alike(special.logsumexp(log_rows, axis=1), place, dependence)
         return WeightedRows(rows, weights, None if scale is None else scale.drawn)
     grid = evidence.grids[0]
     edges = edges_of_rows(grid, log_rows > -np.inf, partial(_allowed_in_world, likelihoods, scale))
     worth = masses(grid, edges, np.exp(log_rows - log_rows.max()))
     with np.errstate(divide="ignore"):
-        weights = _smoothed_alike(np.log(worth.sum(axis=1)), place, part)
+        weights = _smoothed_alike(np.log(worth.sum(axis=1)), place, dependence)
     at = in_order(place.samples)[place.sample]
     drawn = prior_places(edges, worth, at[:, None])[:, 0].copy()
     terms = None if law is None else terms_at(law.scores, special.ndtri(drawn))
     return WeightedRows(rows, weights, scale.quantiles(drawn), terms=terms)
 
 
-def _smoothed_alike(log_rows: Floats, place: Nesting, part: Replicates) -> Smoothed:
+def _smoothed_alike(log_rows: Floats, place: Nesting, dependence: Dependence) -> ImportanceWeights:
     """Return Pareto-smoothed weights; rows of a sample with equal weights keep equal weights."""
     _, first = np.unique(place.sample, return_index=True)
     if not np.array_equal(log_rows, log_rows[first][place.sample]):
-        return smoothed(log_rows, part)
+        return smoothed(log_rows, dependence)
     of_samples = smoothed(log_rows[first])
     return of_samples._replace(weights=of_samples.weights[place.sample])
 
@@ -163,7 +163,7 @@ def inspected(
     unit: int,
     evidence: Evidence,
     likelihoods: UnitLikelihoods,
-    part: Replicates,
+    dependence: Dependence,
     law: SharedLaw | None,
 ) -> WeightedRows:
     """Return the weighted rows that represent an inspected unit.
@@ -189,7 +189,7 @@ def inspected(
         most = float(np.exp(min(log_most, _HUGE)))
     kept = np.isin(np.arange(len(likelihoods.world)), rows)
     with np.errstate(divide="ignore"):
-        weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
+        weights = smoothed(np.log(of_rows), dependence[kept], most)
     if scale is None:
         return WeightedRows(rows, weights, None)
     of_law = np.broadcast_to(special.ndtr(SCORES), (len(rows), len(SCORES)))
@@ -199,7 +199,7 @@ def inspected(
     if law is None:
         return weighted
     terms = worth @ law.terms / np.where(of_rows > 0, of_rows, 1.0)[:, None]
-    return replace(weighted, terms=terms, pulls=pulls_of(unit, of_unit, evidence, law))
+    return replace(weighted, terms=terms, influence=influence_of(unit, of_unit, evidence, law))
 
 
 def _allowed_in_unit(

@@ -220,7 +220,7 @@ def shared_law(evidence: Evidence) -> SharedLaw:
     return SharedLaw(share[0], terms(middle), special.ndtri(places))
 
 
-def pulls_of(unit: int, log_likelihood: Floats, evidence: Evidence, law: SharedLaw) -> Floats:
+def influence_of(unit: int, log_likelihood: Floats, evidence: Evidence, law: SharedLaw) -> Floats:
     """Return the influence of each row, as one unit, on the terms of the law, shape (n, terms).
 
     The sampling error of the law is the mean over rows of the sum over units.

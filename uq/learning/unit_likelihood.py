@@ -116,7 +116,7 @@ class UnitLikelihoods:
     def truth(self, inspection: Inspection, rows: NDArray[np.intp], values: Floats) -> Floats:
         """Return the model value of the observable in the given rows, shape (rows, g)."""
         observable = self.observables[inspection]
-        return observable.truth(inspection.time, rows, self._longer(observable, rows, values))
+        return observable.truth(inspection.time, rows, self._life_factor(observable, rows, values))
 
     def log_most(self, unit: int) -> float:
         """Return an upper bound of `log_likelihood` over all rows and values."""
@@ -138,13 +138,15 @@ class UnitLikelihoods:
         rows = self.blocks[unit]
         is_open, as_drawn = np.zeros(len(rows), dtype=bool), np.ones((len(rows), 1))
         for inspection in self.inspections[unit]:
-            observable, longer = self.observables[inspection], as_drawn
+            observable, life_factor = self.observables[inspection], as_drawn
             if scale is not None:
-                longer = self._longer(observable, rows, scale[:, None])
-            is_open |= observable.bounded(inspection, rows, longer, self._cv)[:, 0]
+                life_factor = self._life_factor(observable, rows, scale[:, None])
+            is_open |= observable.bounded(inspection, rows, life_factor, self._cv)[:, 0]
         return is_open
 
-    def _longer(self, observable: Observable, rows: NDArray[np.intp], values: Floats) -> Floats:
+    def _life_factor(
+        self, observable: Observable, rows: NDArray[np.intp], values: Floats
+    ) -> Floats:
         """Return the factor by which other input values lengthen the lives, shape (rows, g)."""
         if self.scale is None or observable.name not in self.scale.exponents:
             return np.ones((len(rows), values.shape[-1]))

@@ -65,7 +65,7 @@ def model_from(
         title,
         version,
         made,
-        _NoSettings,
+        NoSettings,
         {output: declaration.output(output) for output, declaration in returned.items()},
         batch,
         coordinates=lambda settings: axes,
@@ -131,8 +131,8 @@ def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[s
 
 
 @dataclass(frozen=True)
-class _NoSettings:
-    """There are none."""
+class NoSettings:
+    """Settings of a model without any."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import DisplayUnit, called_together
-from uq.assess.card import STUDY, Card, Cause, card_of, statistic_name
+from uq.assess.card import STUDY, Card, LeadingInput, card_of, statistic_name
 from uq.assess.card_numbers import Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
@@ -301,7 +301,7 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     return header, rows
 
 
-def _share(cause: Cause) -> str:
+def _share(cause: LeadingInput) -> str:
     contribution = cause.contribution
     if not contribution.share_of_variance:
         return contribution.size_of(contribution.indices[0]).partition(" (")[0]
@@ -311,7 +311,7 @@ def _share(cause: Cause) -> str:
     return f"{' + '.join(shares)} %"
 
 
-def _law(cause: Cause) -> str:
+def _law(cause: LeadingInput) -> str:
     """Return the halved scatter and, in brackets, the present one; shortened to fit its column."""
     if cause.tightened is None:
         return ""
@@ -329,7 +329,7 @@ def _law(cause: Cause) -> str:
     return printed(f"{' '.join(words)} ({now})")
 
 
-def _effect(cause: Cause) -> str:
+def _effect(cause: LeadingInput) -> str:
     effect = cause.effect
     if effect is None or effect.direction == 0:
         return ""
@@ -343,7 +343,7 @@ def _value(tolerance: TighterTolerance, value: float) -> str:
     return percent(value) if tolerance.is_share else _brief(tolerance.unit).text(value)
 
 
-def _tightened(cause: Cause) -> str:
+def _tightened(cause: LeadingInput) -> str:
     tolerance = cause.tightened
     if tolerance is None:
         return ""

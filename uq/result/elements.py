@@ -18,18 +18,22 @@ from uq.result.element import elements_in, places
 from uq.result.nesting import is_nested, nesting_of
 from uq.result.result_file import failed, refuse_empty
 from uq.result.variables import outputs_of
-from uq.result.weights import LAW_FOLLOWS, LAW_PULLS, ROWS, has_rounds, largest_weight, row_weights
+from uq.result.weights import (
+    LAW_INFLUENCE,
+    LAW_TERMS,
+    ROWS,
+    has_rounds,
+    largest_weight,
+    row_weights,
+)
 from uq.sampling.designs import CURVES, DESIGNS, NOISE
-from uq.stats.clusters import Clusters, SharedInfluence
+from uq.stats.dependent_rows import INDEPENDENT, Dependence, SharedInfluence
 from uq.stats.importance_weights import (
-    Smoothed,
-    carries_little,
+    ImportanceWeights,
     effective_rows,
-    per_sample,
+    is_negligible,
     tail_shape,
 )
-from uq.stats.intervals import Replicates
-from uq.stats.jumps import EvenReplicates
 from uq.study.reading import study_of_result
 from uq.text.element_names import MOST_PLACES, Place, is_whole, place_of, whole_name
 
@@ -62,22 +66,24 @@ def why_no_statistics(ds: xr.Dataset) -> str:
     return ""
 
 
-def replicates_of(rows: xr.Dataset) -> Replicates:
-    """Return the replicate of each row, or None if the rows are independent.
+def dependence_of(rows: xr.Dataset) -> Dependence:
+    """Return the dependence between rows: in replicates of a design, samples of several rows, ...
 
-    If samples have several rows, return `Clusters`: the sample of each row. The same applies if
-    inspections have weighted all rows jointly.
+    Inspections that have weighted all rows jointly make all of them dependent.
     """
-    together = LAW_PULLS in rows.variables
-    if not is_nested(rows) and not together:
-        if has_independent_samples(rows):
-            return None
-        return EvenReplicates(rows["replicate"].values, inputs_of(rows))
-    place = nesting_of(rows)
+    is_weighted_jointly = LAW_INFLUENCE in rows.variables
     are_samples = has_independent_samples(rows)
-    cluster = place.sample if are_samples else rows["replicate"].values
-    return Clusters(
-        cluster, place.samples, are_samples, _learnt(rows, cluster) if together else None
+    if not is_nested(rows) and not is_weighted_jointly:
+        if are_samples:
+            return INDEPENDENT
+        return Dependence(rows["replicate"].values, inputs_of(rows))
+    place = nesting_of(rows)
+    labels = place.sample if are_samples else rows["replicate"].values
+    return Dependence(
+        labels,
+        samples=place.samples,
+        are_samples=are_samples,
+        shared=_shared_influence(rows, labels) if is_weighted_jointly else None,
     )
 
 
@@ -87,11 +93,11 @@ def inputs_of(rows: xr.Dataset) -> Floats:
     return np.column_stack(columns) if columns else np.empty((rows.sizes["row"], 0))
 
 
-def _learnt(rows: xr.Dataset, part: NDArray[np.integer]) -> SharedInfluence:
+def _shared_influence(rows: xr.Dataset, labels: NDArray[np.integer]) -> SharedInfluence:
     """Return the influence of weighted rows on the posterior law of a shared input."""
-    pulls = rows[LAW_PULLS]
-    scaled_pulls = pulls.values * (len(part) / pulls.attrs[ROWS])
-    return SharedInfluence(scaled_pulls, part, np.arange(len(part)), rows[LAW_FOLLOWS].values)
+    influence = rows[LAW_INFLUENCE]
+    scaled = influence.values * (len(labels) / influence.attrs[ROWS])
+    return SharedInfluence(scaled, labels, np.arange(len(labels)), rows[LAW_TERMS].values)
 
 
 def has_independent_samples(ds: xr.Dataset) -> bool:
@@ -264,7 +270,7 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     raise _no_such_element(name, [element.name for element in elements])
 
 
-def weights_of(rows: xr.Dataset) -> Smoothed | None:
+def weights_of(rows: xr.Dataset) -> ImportanceWeights | None:
     """Return the weights of rows from inspections, None if rows have no weights.
 
     Parameters
@@ -275,7 +281,7 @@ def weights_of(rows: xr.Dataset) -> Smoothed | None:
     weights = row_weights(rows)
     if weights is None:
         return None
-    of_samples = per_sample(weights, replicates_of(rows))
+    of_samples = dependence_of(rows).sums_of_samples(weights)
     k, most = tail_shape(of_samples), largest_weight(rows)
-    k = min(k, 0.0) if carries_little(most, len(of_samples)) else k
-    return Smoothed(weights, k, len(of_samples), effective_rows(of_samples), most)
+    k = min(k, 0.0) if is_negligible(most, len(of_samples)) else k
+    return ImportanceWeights(weights, k, len(of_samples), effective_rows(of_samples), most)

@@ -14,12 +14,12 @@ from uq.errors import InputError, choices, nearest
 from uq.result.element import Element
 from uq.result.elements import (
     category_codes,
+    dependence_of,
     elements_of,
     flags,
     has_independent_samples,
     independent_rows,
     named_elements,
-    replicates_of,
     thinned_outputs,
     weights_of,
     why_no_statistics,
@@ -45,8 +45,8 @@ from uq.result.weights import (
 )
 from uq.sampling.designs import DESIGNS, Design
 from uq.sampling.levels import CHANCE, LEVELS
-from uq.stats.importance_weights import Smoothed
-from uq.stats.intervals import Replicates
+from uq.stats.dependent_rows import Dependence
+from uq.stats.importance_weights import ImportanceWeights
 from uq.study.file import AnalysisTable, StudyFile, Tied
 from uq.study.reading import study_of_result
 from uq.text.numbers import counted
@@ -240,9 +240,9 @@ class Result:
         return why_no_statistics(self.dataset)
 
     @cached_property
-    def replicates(self) -> Replicates:
-        """The replicate or cluster of each row (`uq.result.elements.replicates_of`)."""
-        return replicates_of(self.dataset)
+    def dependence(self) -> Dependence:
+        """The dependence between rows (`uq.result.elements.dependence_of`)."""
+        return dependence_of(self.dataset)
 
     @property
     def has_independent_rows(self) -> bool:
@@ -270,7 +270,7 @@ class Result:
         return row_weights(self.dataset)
 
     @cached_property
-    def weights(self) -> Smoothed | None:
+    def weights(self) -> ImportanceWeights | None:
         """The weights of rows with their quality (`uq.result.elements.weights_of`)."""
         return weights_of(self.dataset)
 

@@ -2,7 +2,6 @@
 
 from collections import namedtuple
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Model, censored_name
 from uq.errors import InputError
+from uq.machines.row_by_row import NoSettings
 from uq.result.element import Element
 from uq.result.one_row import Row
 from uq.result.result import Result
@@ -202,17 +202,12 @@ def stored_row(result: Result, place: int) -> Row:
         title=str(attrs["title"]),
         version=str(attrs["model_version"]),
         parameters=namedtuple("Parameters", values),
-        settings=_Nothing,
+        settings=NoSettings,
         outputs=outputs,
         batch=_refused,
         coordinates=lambda settings: axes,
     )
-    return Row(model, _Nothing(), values, 0, columns, row["status"].values, {})
-
-
-@dataclass(frozen=True)
-class _Nothing:
-    """No settings."""
+    return Row(model, NoSettings(), values, 0, columns, row["status"].values, {})
 
 
 def _refused(*arguments: Any) -> NoReturn:

@@ -24,10 +24,10 @@ SCALE_SCORES, INPUT = "scale_scores", "input"
 """Variable with the law of the integrated input in each row of an inspected unit, and its attribute
 with the name of the input."""
 
-LAW_PULLS, LAW_FOLLOWS, ROWS = "learnt_law_pulls", "learnt_law_follows", "rows"
+LAW_INFLUENCE, LAW_TERMS, ROWS = "learnt_law_pulls", "learnt_law_follows", "rows"
 LAW_SCORES = "learnt_law_scores"
 """Variables of each row, if all units share the integrated input
-(`uq.stats.clusters.SharedInfluence`);
+(`uq.stats.dependent_rows.SharedInfluence`);
 attribute of the first: the number of rows; and quantiles of the law."""
 
 MOST = "largest_possible"
@@ -36,7 +36,7 @@ MOST = "largest_possible"
 
 UNIT_WEIGHT, UNIT_MOST = "unit_weight", "unit_largest_weight"
 UNIT_SCALE, UNIT_SCORES, SCORE = "unit_scale", "unit_scale_scores", "score"
-UNIT_PULLS, INSPECTED = "unit_law_pulls", "inspected"
+UNIT_INFLUENCE, INSPECTED = "unit_law_pulls", "inspected"
 """Variables of each inspected unit, and the dimension of these units."""
 
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
@@ -159,9 +159,9 @@ _NUMBERS = {
     UNIT_MOST: (INSPECTED,),
     UNIT_SCALE: (INSPECTED, _ROW),
     UNIT_SCORES: (INSPECTED, _ROW, SCORE),
-    UNIT_PULLS: (INSPECTED, _ROW, _TERM),
-    LAW_PULLS: (_ROW, _TERM),
-    LAW_FOLLOWS: (_ROW, _TERM),
+    UNIT_INFLUENCE: (INSPECTED, _ROW, _TERM),
+    LAW_INFLUENCE: (_ROW, _TERM),
+    LAW_TERMS: (_ROW, _TERM),
     LAW_SCORES: (SCORE,),
     SCALE_SCORES: (_ROW, SCORE),
 }
@@ -172,8 +172,8 @@ _TOGETHER = (
     (UNIT_WEIGHT, UNIT_MOST),
     (UNIT_SCALE, UNIT_WEIGHT),
     (UNIT_SCORES, UNIT_SCALE),
-    (LAW_PULLS, LAW_FOLLOWS),
-    (LAW_PULLS, LAW_SCORES),
+    (LAW_INFLUENCE, LAW_TERMS),
+    (LAW_INFLUENCE, LAW_SCORES),
 )
 """Pairs of variables: the first needs the second."""
 
@@ -201,8 +201,8 @@ def weight_faults(ds: xr.Dataset) -> Iterator[str]:
     for name, needed in _TOGETHER:
         if name in ds.variables and needed not in ds.variables:
             yield f"it holds '{name}' without '{needed}'"
-    if LAW_PULLS in ds.variables and not _is_count(ds[LAW_PULLS].attrs.get(ROWS)):
-        yield f"attribute '{ROWS}' of '{LAW_PULLS}' is not a positive number"
+    if LAW_INFLUENCE in ds.variables and not _is_count(ds[LAW_INFLUENCE].attrs.get(ROWS)):
+        yield f"attribute '{ROWS}' of '{LAW_INFLUENCE}' is not a positive number"
     if SCALE_SCORES in ds.variables and ds[SCALE_SCORES].attrs.get(INPUT) not in ds.variables:
         yield f"attribute '{INPUT}' of '{SCALE_SCORES}' names no input"
     if not _is_number(ds[WEIGHT].attrs.get(MOST, 1.0), 0.0):

@@ -2,11 +2,11 @@
 
 Reading order; each part imports only those above it:
 
-    clusters              clusters of dependent rows
     estimate              estimate
     quantile_functions    quantile functions of the normal, Student
     roots                 roots of a function of one variable
     jumps                 error of a mean from discontinuities in stratified designs
+    dependent_rows        dependence between rows: replicates, several rows per sample, a shared law
     location_scale        maximum likelihood for censored Weibull and lognormal lives
     estimate_json         estimates as JSON
     two_samples           difference and ratio of two estimates

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.contract import Floats
-from uq.stats.intervals import Replicates, share_interval
+from uq.stats.dependent_rows import Dependence
+from uq.stats.intervals import share_interval
 from uq.stats.weighted_means import weighted_share
 
 _MOST_NUMBERS = 10_000_000
@@ -168,7 +169,7 @@ def mixing_bounds(
     size: Floats,
     weights: Floats,
     worth: Floats,
-    part: Replicates,
+    dependence: Dependence,
     is_counted: bool,
 ) -> Callable[[float], tuple[float, float]]:
     """Return confidence bounds on the mixing distribution of the failure probability.
@@ -184,7 +185,8 @@ def mixing_bounds(
     weights : ndarray, shape (nodes,)
     worth : ndarray, shape (samples,)
         Weights of the samples.
-    part : ndarray of int, shape (samples,), or None
+    dependence : Dependence
+        Of the samples.
     is_counted : bool
         Whether each unit has either ended or not: counts are then binomial, otherwise
         approximately binomial.
@@ -218,7 +220,7 @@ def mixing_bounds(
     shares = (often / often.sum(), sizes)
     few = _at_most(threshold, probability, *shares, 0.0 if is_counted else -1.0, is_counted)
     many = _at_most(threshold, probability, *shares, 0.0, is_counted)
-    ends = np.array([_ends((mean <= c) @ weights, worth, part) for c in threshold])
+    ends = np.array([_ends((mean <= c) @ weights, worth, dependence) for c in threshold])
     low, high = np.zeros(len(probability)), np.ones(len(probability))
     for i in range(len(probability)):
         below = int(np.searchsorted(many[i], _BELOW, side="right")) - 1
@@ -237,12 +239,12 @@ def mixing_bounds(
     return exceeding
 
 
-def _ends(share: Floats, worth: Floats, part: Replicates) -> tuple[float, float]:
+def _ends(share: Floats, worth: Floats, dependence: Dependence) -> tuple[float, float]:
     """Return the confidence interval of a share of samples; 0 to 1 if it cannot be estimated."""
     if np.ptp(worth) > 0 or not np.isin(share, (0.0, 1.0)).all():
-        low, high = weighted_share(share, worth, part).numbers[1:]
+        low, high = weighted_share(share, worth, dependence).numbers[1:]
     else:
-        low, high = share_interval(share > 0, part)
+        low, high = share_interval(share > 0, dependence)
     return (0.0, 1.0) if np.isnan(low) else (low, high)
 
 

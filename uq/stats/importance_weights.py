@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from uq.contract import Floats
-from uq.stats.clusters import Clusters
-from uq.stats.intervals import Replicates, is_constant
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
+from uq.stats.intervals import is_constant
 from uq.stats.tails import DISTINCT, generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
@@ -31,8 +31,8 @@ def effective_rows(numbers: Floats) -> float:
     return float(relative.sum() ** 2 / (relative**2).sum()) if largest > 0 else 0.0
 
 
-class Smoothed(NamedTuple):
-    """Smoothed importance weights of rows, with their diagnostics.
+class ImportanceWeights(NamedTuple):
+    """Importance weights of rows, with their diagnostics.
 
     Attributes
     ----------
@@ -63,7 +63,9 @@ class Smoothed(NamedTuple):
         return self.impossible or refusal(self.k, self.rows)
 
 
-def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) -> Smoothed:
+def smoothed(
+    log_weights: Floats, dependence: Dependence = INDEPENDENT, most: float = inf
+) -> ImportanceWeights:
     """Return Pareto-smoothed weights [1]_.
 
     Weights are not smoothed if a known bound keeps every row below a hundredth of the total weight.
@@ -75,14 +77,13 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
     ----------
     log_weights : ndarray, shape (n,)
         Logarithms of the weights; not all -inf.
-    part : ndarray of int, shape (n,), optional
-        Independent part of each row (`uq.stats.intervals`).
+    dependence : Dependence, optional
     most : float, optional
         Upper limit of the weight of a row, for weights of mean 1.
 
     Returns
     -------
-    Smoothed
+    ImportanceWeights
 
     References
     ----------
@@ -90,11 +91,11 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
        sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     raw = np.exp(log_weights - log_weights.max())
-    of_samples = per_sample(raw, part)
+    of_samples = dependence.sums_of_samples(raw)
     alone = len(of_samples) == 1 and log_weights.any()
     k = inf if alone else tail_shape(of_samples)
     weights = raw
-    if carries_little(most, len(of_samples)):
+    if is_negligible(most, len(of_samples)):
         k = min(k, 0.0)
     elif np.isfinite(k):
         smooth = _with_smooth_tail(of_samples)
@@ -103,37 +104,39 @@ def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) ->
         else:
             with np.errstate(invalid="ignore"):  # samples without weight
                 factors = np.nan_to_num(smooth / of_samples)
-            weights = raw * factors[np.unique(np.asarray(part), return_inverse=True)[1]]
-    effective = effective_rows(per_sample(weights, part))
-    return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
+            weights = (
+                raw * factors[np.unique(np.asarray(dependence.labels), return_inverse=True)[1]]
+            )
+    effective = effective_rows(dependence.sums_of_samples(weights))
+    return ImportanceWeights(weights / weights.mean(), k, len(of_samples), effective, most)
 
 
-def no_weights(rows: int, why: str) -> Smoothed:
+def impossible_weights(rows: int, why: str) -> ImportanceWeights:
     """Return unit weights for rows that cannot be weighted, with the reason."""
-    return Smoothed(np.ones(rows), inf, rows, 0.0, impossible=why)
+    return ImportanceWeights(np.ones(rows), inf, rows, 0.0, impossible=why)
 
 
-def carries_little(most: float, rows: int) -> bool:
+def is_negligible(most: float, rows: int) -> bool:
     """Whether no row can carry more than a hundredth of the total weight."""
-    return rows_to_carry_little(most) <= rows
+    return rows_to_be_negligible(most) <= rows
 
 
-def rows_to_carry_little(most: float) -> float:
+def rows_to_be_negligible(most: float) -> float:
     """Return the sample size at which no row can exceed a hundredth of the total weight."""
     return most / _LITTLE
 
 
-def of_samples(weights: Floats) -> Smoothed:
+def of_samples(weights: Floats) -> ImportanceWeights:
     """Return posterior weights of samples after inspections, with their diagnostics."""
-    return Smoothed(weights, tail_shape(weights), len(weights), effective_rows(weights))
+    return ImportanceWeights(weights, tail_shape(weights), len(weights), effective_rows(weights))
 
 
-def quality(weights: Smoothed | None) -> dict[str, float]:
+def quality(weights: ImportanceWeights | None) -> dict[str, float]:
     """Return the effective sample size and the Pareto shape of the weights."""
     return {} if weights is None else {"effective_rows": weights.effective, "pareto_k": weights.k}
 
 
-def worth_in_words(weights: Smoothed) -> str:
+def worth_in_words(weights: ImportanceWeights) -> str:
     """Return the number of samples and the effective sample size in words."""
     return f"{weights.rows} samples, worth {weights.effective:.0f} of equal weight"
 
@@ -215,14 +218,6 @@ def too_large(share: float, rows: int) -> str:
         return ""
     more = ceil(rows * (share / _LITTLE - 1))
     return f"a single sample carries {share:.1%} of the weight, above {_LITTLE:.0%}: add {more}"
-
-
-def per_sample(numbers: Floats, part: Replicates) -> Floats:
-    """Return the sum over each independent sample, or the numbers if rows are independent."""
-    if not (isinstance(part, Clusters) and part.are_samples):
-        return numbers
-    _, place = np.unique(np.asarray(part), return_inverse=True)
-    return np.bincount(place, weights=numbers).astype(float)
 
 
 def _are_few_values(ascending: Floats, count: int) -> bool:

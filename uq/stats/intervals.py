@@ -1,23 +1,21 @@
 """Confidence intervals of means and proportions, 95 % by default.
 
-Rows are either independent (``replicate`` is None) or belong to independent replicates of a design;
-``replicate`` then gives the number of the replicate of each row. Formulas for independent rows are
-wrong for the rows of a Latin hypercube or a low-discrepancy sequence, whose estimates scatter less;
-their error is estimated from the scatter between replicates. If samples have several rows, samples
-take the place of replicates (`uq.stats.clusters.Clusters`). If no interval exists (one replicate,
-too few rows, replicates that agree to the last bit), the result is ``(nan, nan)``, never an
-interval of zero width.
+Rows are independent, or dependent within replicates of a design or within samples of several rows
+(`uq.stats.dependent_rows.Dependence`). Formulas for independent rows are wrong for the rows of a
+Latin hypercube or a low-discrepancy sequence, whose estimates scatter less; their error is
+estimated from the scatter between replicates. If no interval exists (one replicate, too few rows,
+replicates that agree to the last bit), the result is ``(nan, nan)``, never an interval of zero
+width.
 """
 
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special
 
 from uq.contract import Floats, Mask
-from uq.stats.clusters import Clusters, linearised_means
-from uq.stats.jumps import beyond_jumps
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
+from uq.stats.jumps import widened_for_jumps
 from uq.stats.quantile_functions import normal, student
 
 CONFIDENCE = 0.95
@@ -26,8 +24,6 @@ ONE_ROW = "a single row does not show any scatter"
 
 ROUNDING = 64 * np.finfo(float).eps
 """Relative difference below which values are equal but for rounding."""
-
-Replicates = NDArray[np.integer] | None
 
 Ends = tuple[Any, Any]
 """Lower and upper end of an interval, or of several (two arrays); NaN if unknown."""
@@ -146,7 +142,7 @@ def log_scatter_interval(estimates: Floats) -> Ends:
 
 
 def mean_interval(
-    values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+    values: Floats, dependence: Dependence = INDEPENDENT, confidence: float = CONFIDENCE
 ) -> Ends:
     """Return the confidence interval of a mean.
 
@@ -154,7 +150,7 @@ def mean_interval(
     ----------
     values : ndarray, shape (n,)
         Finite.
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
     confidence : float, optional
 
     Returns
@@ -162,7 +158,7 @@ def mean_interval(
     low, high : float
         Student's t interval [1]_ from the rows, or from the means of the replicates, which is
         widened for the error of jumps (`uq.stats.jumps`). For independent rows or samples the
-        interval is widened for two more outliers (`beyond_outliers`).
+        interval is widened for two more outliers (`widened_for_outliers`).
 
     References
     ----------
@@ -171,19 +167,13 @@ def mean_interval(
     if len(values) < 2 or is_constant(values):
         return UNKNOWN
     mean = float(values.mean())
-    ends = interval_of_mean(mean, values, replicate, confidence)
-    if not parts_are_independent(replicate):
+    ends = interval_of_mean(mean, values, dependence, confidence)
+    if not dependence.has_independent_parts:
         return ends
-    parts = values if replicate is None else by_replicate(values, replicate)
-    return beyond_outliers(mean, ends, parts)
+    return widened_for_outliers(mean, ends, dependence.part_means(values))
 
 
-def parts_are_independent(replicate: Replicates) -> bool:
-    """Whether rows, or samples of several rows, are independent rather than a stratified design."""
-    return replicate is None or isinstance(replicate, Clusters) and replicate.are_samples
-
-
-def beyond_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) -> Ends:
+def widened_for_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) -> Ends:
     """Return an interval widened for further outliers as extreme as the most extreme estimate.
 
     Parameters
@@ -212,7 +202,10 @@ def outlier_shift(value: float, estimates: Floats, more: int = 2) -> float:
 
 
 def interval_of_mean(
-    value: float, values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+    value: float,
+    values: Floats,
+    dependence: Dependence = INDEPENDENT,
+    confidence: float = CONFIDENCE,
 ) -> Ends:
     """Return the confidence interval of an estimate from its influence values.
 
@@ -221,7 +214,7 @@ def interval_of_mean(
     value : float
     values : ndarray, shape (n,)
         The rows themselves, or the influence of each row on the estimate plus a constant.
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
     confidence : float, optional
 
     Returns
@@ -229,23 +222,23 @@ def interval_of_mean(
     low, high : float
         As in `mean_interval`.
     """
-    if replicate is None:
+    if dependence.is_none:
         return scatter_interval(value, values, confidence)
     values, unit = sized(values)  # squares of jumps neither overflow nor vanish
-    ends = scatter_interval(value / unit, by_replicate(values, replicate), confidence)
-    low, high = beyond_jumps(value / unit, ends, values, replicate, confidence)
+    ends = scatter_interval(value / unit, dependence.part_means(values), confidence)
+    low, high = widened_for_jumps(value / unit, ends, values, dependence.neighbours, confidence)
     return unit * low, unit * high
 
 
 def share_interval(
-    hits: Mask, replicate: Replicates = None, confidence: float = CONFIDENCE
+    hits: Mask, dependence: Dependence = INDEPENDENT, confidence: float = CONFIDENCE
 ) -> Ends:
     """Return the confidence interval of a proportion of rows.
 
     Parameters
     ----------
     hits : ndarray of bool, shape (n,)
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
     confidence : float, optional
 
     Returns
@@ -266,15 +259,15 @@ def share_interval(
     """
     if len(hits) == 0:
         return UNKNOWN
-    if replicate is None:
+    if dependence.is_none:
         return binomial_interval(hits.mean(), len(hits), confidence)
     return _floats(
         scattered_share_interval(
             hits.mean(),
-            by_replicate(hits, replicate),
+            dependence.part_means(hits),
             confidence=confidence,
             rows=len(hits),
-            samples=replicate.samples if isinstance(replicate, Clusters) else None,
+            samples=dependence.samples,
         )
     )
 
@@ -350,20 +343,6 @@ def scattered_share_interval(
     few = are_few(share, rows if samples is None else worth)
     low, high = exact_interval(share, worth, confidence)
     return np.where(few, low, wilson[0]), np.where(few, high, wilson[1])
-
-
-def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
-    """Return the mean of each replicate that has rows; for samples see `linearised_means`."""
-    if isinstance(replicate, Clusters):
-        return linearised_means(values, replicate)
-    counts = np.bincount(replicate)
-    sums = np.bincount(replicate, weights=values.astype(float, copy=False))
-    return sums[counts > 0] / counts[counts > 0]
-
-
-def replicates_of_some(replicate: Replicates, rows: NDArray[Any]) -> Replicates:
-    """Return the replicate of each row of a subset."""
-    return None if replicate is None else replicate[rows]
 
 
 def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Ends:

@@ -6,14 +6,12 @@ replicates, the jump adds nothing to the scatter between replicates, although it
 large.
 """
 
-from functools import cached_property
 from itertools import combinations
 from math import log
-from typing import Any, Self
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from uq.contract import Floats
 
@@ -40,41 +38,6 @@ WIDEST = 16
 """Divisor of the number of rows: the quotient limits the number of neighbours on each side."""
 
 
-class EvenReplicates(np.ndarray[Any, np.dtype[np.int64]]):
-    """Replicate of each row of a stratified design, with the inputs of the rows.
-
-    Attributes
-    ----------
-    inputs : ndarray, shape (n, d)
-    """
-
-    inputs: Floats
-
-    def __new__(cls, replicate: ArrayLike, inputs: Floats) -> Self:
-        """Create an array of replicate labels, shape (n,), with the inputs."""
-        marked = np.asarray(replicate, dtype=np.int64).view(cls)
-        marked.inputs = inputs
-        return marked
-
-    def __array_finalize__(self, other: Any) -> None:
-        """Drop the inputs, which may belong to other rows."""
-        self.inputs = np.empty((0, 0))
-
-    def __getitem__(self, rows: Any) -> Any:
-        """Return the replicates of a subset; for all rows the array itself, with its neighbours."""
-        if isinstance(rows, np.ndarray) and rows.dtype == bool and rows.all():
-            return self
-        chosen = super().__getitem__(rows)
-        if isinstance(chosen, EvenReplicates) and len(self.inputs):
-            chosen.inputs = self.inputs[rows]
-        return chosen
-
-    @cached_property
-    def neighbours(self) -> "Neighbours":
-        """Order of the rows along each input, and the polynomials of the smooth part."""
-        return Neighbours(np.asarray(self), self.inputs)
-
-
 class Neighbours:
     """Order of the rows along each input, and polynomials that describe the smooth part.
 
@@ -95,7 +58,7 @@ class Neighbours:
     inputs : ndarray, shape (n, d)
     """
 
-    def __init__(self, replicate: NDArray[np.int64], inputs: Floats):
+    def __init__(self, replicate: NDArray[np.integer], inputs: Floats):
         _, first, counts = np.unique(np.sort(replicate), return_index=True, return_counts=True)
         place = np.empty(len(replicate), dtype=np.intp)
         place[np.argsort(replicate, kind="stable")] = np.arange(len(replicate)) - np.repeat(
@@ -143,8 +106,12 @@ def _polynomials(scores: Floats) -> Floats:
     return np.column_stack(terms)
 
 
-def beyond_jumps(
-    value: float, ends: tuple[float, float], values: Floats, replicate: Any, confidence: float
+def widened_for_jumps(
+    value: float,
+    ends: tuple[float, float],
+    values: Floats,
+    neighbours: Neighbours | None,
+    confidence: float,
 ) -> tuple[float, float]:
     """Return the interval of a mean, widened for the error of jumps.
 
@@ -156,21 +123,22 @@ def beyond_jumps(
         Interval from the scatter of replicates.
     values : ndarray, shape (n,)
         Values of the rows, or their influence on the estimate.
-    replicate : ndarray of int, shape (n,), optional
+    neighbours : Neighbours or None
+        Neighbours of these rows; None if no jump can be hidden.
     confidence : float
 
     Returns
     -------
     low, high : float
-        The interval is unchanged unless `replicate` has the inputs of the rows. Otherwise each
-        half-width is the root of a sum of squares: of the half-width from the scatter, and of
-        J times -log((1 - confidence) / 2) / n for each jump J. The latter factor is the share of
-        rows beyond a jump that n rows miss with the probability of one tail.
+        The interval is unchanged without neighbours. Otherwise each half-width is the root of a
+        sum of squares: of the half-width from the scatter, and of J times
+        -log((1 - confidence) / 2) / n for each jump J. The latter factor is the share of rows
+        beyond a jump that n rows miss with the probability of one tail.
     """
-    if not isinstance(replicate, EvenReplicates) or not replicate.inputs.size:
+    if neighbours is None:
         return ends
     share = -log((1 - confidence) / 2) / len(values)
-    error = share * float(np.sqrt(np.square(jumps(values, replicate.neighbours)).sum()))
+    error = share * float(np.sqrt(np.square(jumps(values, neighbours)).sum()))
     return (
         float(value - np.hypot(value - ends[0], error)),
         float(value + np.hypot(ends[1] - value, error)),

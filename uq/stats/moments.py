@@ -3,27 +3,23 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uq.contract import Floats
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import (
     CONFIDENCE,
     ONE_ROW,
     UNKNOWN,
     Ends,
-    Replicates,
-    beyond_outliers,
-    by_replicate,
     is_constant,
     mean_interval,
-    parts_are_independent,
     scatter_interval,
     sized,
     upper_probability,
+    widened_for_outliers,
 )
-from uq.stats.jumps import beyond_jumps
+from uq.stats.jumps import widened_for_jumps
 from uq.stats.quantile_functions import student
 from uq.stats.tails import Tail, heavier_tail
 
@@ -46,7 +42,7 @@ _FEWEST = 8  # fewest rows from which the scatter of squares is estimated
 
 
 def corrected_mean_interval(
-    values: Floats, replicate: NDArray[np.integer], confidence: float = CONFIDENCE
+    values: Floats, dependence: Dependence, confidence: float = CONFIDENCE
 ) -> Ends:
     """Return the skewness-corrected confidence interval of a mean from replicates (Hall 1992).
 
@@ -54,8 +50,8 @@ def corrected_mean_interval(
     ----------
     values : ndarray, shape (n,)
         Finite.
-    replicate : ndarray of int, shape (n,)
-        Replicate of each row; the means of replicates are not all equal.
+    dependence : Dependence
+        Replicates of the rows; their means are not all equal.
     confidence : float, optional
 
     Returns
@@ -65,9 +61,11 @@ def corrected_mean_interval(
         (`uq.stats.jumps`) and for one more row as extreme as the most extreme.
     """
     values, size = sized(values)  # squares neither overflow nor vanish
-    means = by_replicate(values, replicate)
+    means = dependence.part_means(values)
     ends = hall_interval(means, confidence)
-    low, high = beyond_jumps(float(means.mean()), ends, values, replicate, confidence)
+    low, high = widened_for_jumps(
+        float(means.mean()), ends, values, dependence.neighbours, confidence
+    )
     away = values - values.mean()
     moved = float(away[np.abs(away).argmax()]) / len(values)
     return size * (low + min(moved, 0.0)), size * (high + max(moved, 0.0))
@@ -138,7 +136,7 @@ class Moments(NamedTuple):
 
 
 def moments(
-    values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+    values: Floats, dependence: Dependence = INDEPENDENT, confidence: float = CONFIDENCE
 ) -> Moments:
     """Estimate the mean and the standard deviation.
 
@@ -146,7 +144,7 @@ def moments(
     ----------
     values : ndarray, shape (n,)
         Finite; at least one.
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
     confidence : float, optional
 
     Returns
@@ -158,7 +156,7 @@ def moments(
     no_mean = no_sd = "" if tail is None or has_sd else _no_variance(tail)
     if tail is not None and not has_mean:
         no_mean = f"heavy tail: {_seen(tail)}; with k above 1 there is no mean{_REMEDY}"
-    if not no_sd and replicate is None and 1 < len(values) < ENOUGH_ROWS:
+    if not no_sd and dependence.is_none and 1 < len(values) < ENOUGH_ROWS:
         if not is_constant(values):
             no_sd = f"{ENOUGH_ROWS} rows are required to estimate the tails"
     if len(values) == 1:
@@ -167,12 +165,12 @@ def moments(
     return Moments(
         Estimate(
             mean if has_mean else np.nan,
-            *(UNKNOWN if no_mean else mean_interval(values, replicate, confidence)),
+            *(UNKNOWN if no_mean else mean_interval(values, dependence, confidence)),
             no_mean,
         ),
         Estimate(
-            standard_deviation(values, replicate) if has_sd else np.nan,
-            *(UNKNOWN if no_sd else sd_interval(values, replicate, confidence)),
+            standard_deviation(values, dependence) if has_sd else np.nan,
+            *(UNKNOWN if no_sd else sd_interval(values, dependence, confidence)),
             no_sd,
         ),
         tail,
@@ -205,7 +203,7 @@ def _no_variance(tail: Tail) -> str:
 
 
 def sd_interval(
-    values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+    values: Floats, dependence: Dependence = INDEPENDENT, confidence: float = CONFIDENCE
 ) -> Ends:
     """Return the confidence interval of the standard deviation.
 
@@ -213,7 +211,7 @@ def sd_interval(
     ----------
     values : ndarray, shape (n,)
         Finite.
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
     confidence : float, optional
 
     Returns
@@ -222,7 +220,7 @@ def sd_interval(
         Independent rows, or samples of several rows: Student's t interval of the squared deviations
         from the mean [1]_. It gives the relative error of the variance, to which the error of the
         mean is added, and is applied to the logarithm. It is widened for further outliers
-        (`uq.stats.intervals.beyond_outliers`), since samples that lack them underestimate the
+        (`uq.stats.intervals.widened_for_outliers`), since samples that lack them underestimate the
         scatter. Replicates: Student's t interval of the logarithms of their variances, widened for
         undetected jumps (`uq.stats.jumps`). The upper end is raised by the effect of one more row
         as extreme as the most extreme.
@@ -236,18 +234,20 @@ def sd_interval(
         return UNKNOWN
     values, size = sized(values)
     squares = (values - values.mean()) ** 2
-    variance = standard_deviation(values, replicate) ** 2
-    mean_squares = squares if replicate is None else by_replicate(squares, replicate)
-    if parts_are_independent(replicate):
+    variance = standard_deviation(values, dependence) ** 2
+    mean_squares = dependence.part_means(squares)
+    if dependence.has_independent_parts:
         low, high = _relative_ends(mean_squares / variance, confidence)
         return size * float(np.sqrt(variance * low)), size * float(np.sqrt(variance * high))
     logarithm = float(np.log(variance))
-    if isinstance(replicate, Clusters):  # few rows each: log variances scatter too much
+    if dependence.samples is not None:  # few rows each: log variances scatter too much
         low, high = np.exp(scatter_interval(logarithm, mean_squares / variance, confidence))
-        high += mean_squares.max() / max(len(mean_squares), replicate.samples)
+        high += mean_squares.max() / max(len(mean_squares), dependence.samples)
     elif (mean_squares > 0).all():
         low, high = np.exp(scatter_interval(logarithm, np.log(mean_squares), confidence))
-        low, high = beyond_jumps(variance, (low, high), squares, replicate, confidence)
+        low, high = widened_for_jumps(
+            variance, (low, high), squares, dependence.neighbours, confidence
+        )
         low, high = max(low, 0.0), high + squares.max() / n
     else:
         return UNKNOWN
@@ -262,17 +262,17 @@ def _relative_ends(squares: Floats, confidence: float) -> Ends:
     wide = student(upper_probability(confidence), n - 1)
     # The error of the mean, t s / sqrt(n), matters only if nearly all squares are equal.
     half = np.hypot(wide * squares.std(ddof=1) / n**0.5, wide**2 / n)
-    ends = beyond_outliers(0.0, (-half, half), squares - squares.mean(), OUTLYING_SQUARES)
+    ends = widened_for_outliers(0.0, (-half, half), squares - squares.mean(), OUTLYING_SQUARES)
     return float(np.exp(ends[0])), float(np.exp(ends[1]))
 
 
-def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
+def standard_deviation(values: Floats, dependence: Dependence = INDEPENDENT) -> float:
     """Return the sample standard deviation: the root of the unbiased variance; NaN for one row.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
 
     Returns
     -------
@@ -286,7 +286,7 @@ def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
     if np.ptp(values) == 0:
         return 0.0  # deviations from the rounded mean would not be zero
     values, size = sized(values)
-    means = values[:1] if replicate is None else by_replicate(values, replicate)
-    if len(means) > 1:
+    means = dependence.part_means(values)
+    if not dependence.is_none and len(means) > 1:
         return size * float(np.sqrt(values.var() + np.var(means, ddof=1) / len(means)))
     return size * float(values.std(ddof=1))

@@ -5,14 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from uq.contract import Floats
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.intervals import (
     CONFIDENCE,
     ROUNDING,
     UNKNOWN,
     Ends,
-    Replicates,
-    by_replicate,
     scattered_share_interval,
     upper_probability,
 )
@@ -71,7 +69,7 @@ def quantile(values: Floats, probability: float) -> float:
 def quantile_interval(
     values: Floats,
     probability: float,
-    replicate: Replicates = None,
+    dependence: Dependence = INDEPENDENT,
     confidence: float = CONFIDENCE,
     ascending: Floats | None = None,
 ) -> Ends:
@@ -82,7 +80,7 @@ def quantile_interval(
     values : ndarray, shape (n,)
         Finite or infinite.
     probability : float
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
     confidence : float, optional
     ascending : ndarray, shape (n,), optional
         The sorted values, if already available.
@@ -103,7 +101,7 @@ def quantile_interval(
     n = len(values)
     if n == 0:
         return UNKNOWN
-    if replicate is None:
+    if dependence.is_none:
         tail = 1 - upper_probability(confidence)
         return (
             order_statistic(values, binomial(tail, n, probability)),
@@ -114,9 +112,14 @@ def quantile_interval(
     if np.isnan(value):
         return UNKNOWN
     below = values < value if np.isposinf(value) else values <= value
-    several = {"rows": n, "samples": replicate.samples} if isinstance(replicate, Clusters) else {}
+    samples = dependence.samples
     low, high = scattered_share_interval(
-        probability, by_replicate(below, replicate), below.mean(), confidence, **several
+        probability,
+        dependence.part_means(below),
+        below.mean(),
+        confidence,
+        rows=None if samples is None else n,
+        samples=samples,
     )
     return (
         quantile(ascending, low) if low * n >= 1 else np.nan,

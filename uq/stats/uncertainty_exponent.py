@@ -87,11 +87,11 @@ def uncertainty_exponent(
         expected *= differing.sum() / expected.sum()
         centre = np.average(distance, weights=expected)
         terms = (differing - expected) * (distance - centre)
-        pulls = np.bincount(pairs[0], terms, rows)
-        pulls += np.bincount(pairs[1], terms, rows)
-        squares = pulls**2
+        influence = np.bincount(pairs[0], terms, rows)
+        influence += np.bincount(pairs[1], terms, rows)
+        squares = influence**2
         # Each pair contributes to the influence of two rows; the mean influence is the score.
-        shared = squares.sum() - (terms**2).sum() - squares.size * pulls.mean() ** 2
+        shared = squares.sum() - (terms**2).sum() - squares.size * influence.mean() ** 2
         variance = max(shared, (terms**2).sum())
         effective = squares.sum() ** 2 / (squares**2).sum()
         return float(terms.sum() / np.sqrt(variance)), float(effective)

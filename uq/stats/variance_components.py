@@ -231,15 +231,15 @@ def _shares(sums: Floats) -> tuple[Floats, Floats, Floats, Floats]:
 def _estimate(value: float, added: float, beside: float, without: Floats) -> Estimate:
     """Return a share with its jackknife interval, from its leave-one-group-out values."""
     groups = len(without)
-    pulls = (groups - 1) * (value - without)
-    pulls = pulls - pulls.mean()
-    squares = pulls @ pulls
+    influence = (groups - 1) * (value - without)
+    influence = influence - influence.mean()
+    squares = influence @ influence
     up, down = value + added, 1 - value + beside
     if not squares > 0:
         return Estimate(value, reason=NO_SCATTER)
     if not (up > 0 and down > 0):
         return Estimate(value, 0.0, 1.0)
-    widened = 1 + FARTHEST * float((pulls**2).max() / squares) ** 2
+    widened = 1 + FARTHEST * float((influence**2).max() / squares) ** 2
     error = np.sqrt(widened * squares / (groups * (groups - 1)))
     half = student(upper_probability(CONFIDENCE), groups - 1) * error * (1 / up + 1 / down)
     middle = np.log(up / down)

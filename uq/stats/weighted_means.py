@@ -12,14 +12,13 @@ import numpy as np
 from scipy import special
 
 from uq.contract import Floats
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import (
     HOPELESS,
-    carries_little,
     effective_rows,
+    is_negligible,
     largest_share,
-    per_sample,
     refusal,
     tail_shape,
     too_large,
@@ -29,28 +28,29 @@ from uq.stats.intervals import (
     ONE_ROW,
     ROUNDING,
     Ends,
-    Replicates,
-    beyond_outliers,
     exact_interval,
     is_constant,
     outlier_shift,
     scatter_interval,
     sized,
     upper_probability,
+    widened_for_outliers,
     wilson_interval,
 )
-from uq.stats.jumps import EvenReplicates, beyond_jumps
+from uq.stats.jumps import widened_for_jumps
 from uq.stats.quantile_functions import student
 
 FEW = 20
 """With fewer effective rows on either side, an interval is no narrower than a binomial one."""
 
 
-Hits = tuple[float, float]
-"""Sample size of a binomial interval that another interval must cover, and its weight (extent)."""
+BinomialSize = tuple[float, float]
+"""Sample size of a binomial interval that another interval must cover, and its extent."""
 
 
-def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> list[Hits]:
+def binomial_sizes(
+    numbers: Floats, weights: Floats | None, dependence: Dependence
+) -> list[BinomialSize]:
     """Return the binomial sample sizes that an interval must allow for, if few rows determine it.
 
     Parameters
@@ -58,8 +58,7 @@ def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> li
     numbers : ndarray, shape (n,)
         Between 0 and 1.
     weights : ndarray, shape (n,), or None
-    part : ndarray of int, shape (n,), or None
-        The independent part of each row.
+    dependence : Dependence
 
     Returns
     -------
@@ -71,10 +70,10 @@ def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> li
         linear in between, so that the interval is continuous in the weights.
     """
     worth = np.ones(len(numbers)) if weights is None else weights
-    of_samples = per_sample(worth, part)
+    of_samples = dependence.sums_of_samples(worth)
     hits = []
     for side in (numbers, 1 - numbers):
-        carried = per_sample(worth * side, part)
+        carried = dependence.sums_of_samples(worth * side)
         extent = float(np.clip(2 - effective_rows(carried) / FEW, 0.0, 1.0))
         if extent > 0:
             most = carried.max()
@@ -86,12 +85,14 @@ def hits_behind(numbers: Floats, weights: Floats | None, part: Replicates) -> li
     return hits
 
 
-def fewest_rows(hits: list[Hits]) -> float:
+def fewest_rows(hits: list[BinomialSize]) -> float:
     """Return the smallest binomial sample size; infinite if the list is empty."""
     return min((rows for rows, _ in hits), default=inf)
 
 
-def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> Ends:
+def widened_to_binomial(
+    ends: Ends, hits: list[BinomialSize], of_hits: Callable[[float], Ends]
+) -> Ends:
     """Return an interval widened to the binomial intervals, in proportion to their extent.
 
     Parameters
@@ -113,20 +114,20 @@ def widened(ends: Ends, hits: list[Hits], of_hits: Callable[[float], Ends]) -> E
 EXACT = "exact: rows differ only in integrated inputs"
 
 
-def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
+def weighted_part_means(numbers: Floats, weights: Floats, dependence: Dependence) -> Floats:
     """Return the linearised weighted mean of each independent part, shape (parts,).
 
     This is the mean of all rows plus the influence of the part on it. If the law of an input was
     estimated from all rows, the influence on this law is included
-    (`uq.stats.clusters.SharedInfluence`).
+    (`uq.stats.dependent_rows.SharedInfluence`).
     """
     mean = np.average(numbers, weights=weights)
     influence = _influence(numbers, weights)
-    if part is None:
+    labels, shared = dependence.labels, dependence.shared
+    if labels is None:
         return mean + influence
-    labels = np.asarray(part)
-    if isinstance(part, Clusters) and part.together is not None:
-        labels, influence = part.together.part, part.together.with_errors(influence)
+    if shared is not None:
+        labels, influence = shared.labels, shared.added_to(influence)
     _, place = np.unique(labels, return_inverse=True)
     sums = np.bincount(place, weights=influence)
     return np.asarray(mean + len(sums) * sums / len(influence))
@@ -140,8 +141,8 @@ def _influence(numbers: Floats, weights: Floats) -> Floats:
 def weighted_share(
     numbers: Floats,
     weights: Floats | None = None,
-    part: Replicates = None,
-    hits: list[Hits] | None = None,
+    dependence: Dependence = INDEPENDENT,
+    hits: list[BinomialSize] | None = None,
     confidence: float = CONFIDENCE,
 ) -> Estimate:
     """Estimate a weighted mean of numbers between 0 and 1 [1]_.
@@ -151,10 +152,9 @@ def weighted_share(
     numbers : ndarray, shape (n,)
         Conditional probabilities given each row.
     weights : ndarray, shape (n,), optional
-    part : ndarray of int, shape (n,), optional
-        The independent part of each row.
+    dependence : Dependence, optional
     hits : list of (rows, extent), optional
-        Binomial sample sizes that the interval must allow for; by default `hits_behind`.
+        Binomial sample sizes that the interval must allow for; by default `binomial_sizes`.
     confidence : float, optional
 
     Returns
@@ -174,10 +174,10 @@ def weighted_share(
     if not worth.sum() > 0:
         return Estimate()
     mean = float(np.clip(np.average(numbers, weights=worth), 0.0, 1.0))
-    part_means = pulls(numbers, worth, part)
+    part_means = weighted_part_means(numbers, worth, dependence)
     parts = len(part_means)
     if parts < 2:
-        return Estimate(mean, reason=ONE_ROW if part is None else "")
+        return Estimate(mean, reason=ONE_ROW if dependence.is_none else "")
     if numbers.min() >= 1 - ROUNDING:  # the complement is only rounding
         mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
@@ -186,17 +186,19 @@ def weighted_share(
     if 0 < mean < 1:
         outlier = outlier_shift(mean, part_means)
         low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
-    hits = hits_behind(numbers, weights, part) if hits is None else hits
-    low, high = widened((low, high), hits, lambda rows: exact_interval(mean, rows, confidence))
+    hits = binomial_sizes(numbers, weights, dependence) if hits is None else hits
+    low, high = widened_to_binomial(
+        (low, high), hits, lambda rows: exact_interval(mean, rows, confidence)
+    )
     return Estimate(mean, float(low), float(high))
 
 
-def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
+def share_to_compare(numbers: Floats, dependence: Dependence = INDEPENDENT) -> Estimate:
     """Estimate the mean of numbers between 0 and 1, with an interval for use in a difference.
 
     Parameters
     ----------
-    numbers, part
+    numbers, dependence
         As for `weighted_share`.
 
     Returns
@@ -209,11 +211,13 @@ def share_to_compare(numbers: Floats, part: Replicates = None) -> Estimate:
     if not len(numbers):
         return Estimate()
     mean = float(np.clip(numbers.mean(), 0.0, 1.0))
-    part_means = pulls(numbers, np.ones(len(numbers)), part)
+    part_means = weighted_part_means(numbers, np.ones(len(numbers)), dependence)
     if len(part_means) < 2:
         return Estimate(mean)
-    hits = hits_behind(numbers, None, part)
-    low, high = widened(_of_logit(mean, part_means), hits, lambda rows: wilson_interval(mean, rows))
+    hits = binomial_sizes(numbers, None, dependence)
+    low, high = widened_to_binomial(
+        _of_logit(mean, part_means), hits, lambda rows: wilson_interval(mean, rows)
+    )
     return Estimate(mean, low, high)
 
 
@@ -231,14 +235,17 @@ def _of_logit(
 
 
 def moments_of_rows(
-    values: Floats, weights: Floats, part: Replicates = None, within: Floats | float = 0.0
+    values: Floats,
+    weights: Floats,
+    dependence: Dependence = INDEPENDENT,
+    within: Floats | float = 0.0,
 ) -> tuple[Estimate, Estimate]:
     """Estimate mean and standard deviation from rows with reliable weights [1]_.
 
     Parameters
     ----------
     values, weights : ndarray, shape (n,)
-    part : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
     within : ndarray, shape (n,), optional
         Variance of each value, if the value is the mean of a law.
 
@@ -261,22 +268,24 @@ def moments_of_rows(
         return Estimate(unit * mean, reason=ONE_ROW), Estimate(reason=ONE_ROW)
     squares = (values - mean) ** 2 + within / unit / unit
     variance = float(np.average(squares, weights=weights))
-    of_rows = isinstance(part, EvenReplicates) and not is_constant(weights)
-    influence, part_means = _influence(values, weights), pulls(values, weights, part)
+    of_rows = dependence.inputs is not None and not is_constant(weights)
+    influence = _influence(values, weights)
+    part_means = weighted_part_means(values, weights, dependence)
     parts = mean + influence if of_rows else part_means
-    ends = beyond_outliers(mean, scatter_interval(mean, part_means), parts)
-    ends = beyond_jumps(mean, ends, influence, part, CONFIDENCE)
+    ends = widened_for_outliers(mean, scatter_interval(mean, part_means), parts)
+    ends = widened_for_jumps(mean, ends, influence, dependence.neighbours, CONFIDENCE)
     of_mean = Estimate(unit * mean, unit * ends[0], unit * ends[1])
     size = max(variance, 1e-300)
-    relative, rows = pulls(squares, weights, part) / size, _influence(squares, weights) / size
+    relative = weighted_part_means(squares, weights, dependence) / size
+    rows = _influence(squares, weights) / size
     parts = 1.0 + rows if of_rows else relative
-    away = np.asarray(beyond_outliers(1.0, scatter_interval(1.0, relative), parts)) - 1.0
+    away = np.asarray(widened_for_outliers(1.0, scatter_interval(1.0, relative), parts)) - 1.0
     sd = unit * variance**0.5
     return of_mean, Estimate(sd, *(sd * np.exp(away / 2)).tolist())
 
 
 def weighted_moments(
-    values: Floats, weights: Floats, part: Replicates = None
+    values: Floats, weights: Floats, dependence: Dependence = INDEPENDENT
 ) -> tuple[Estimate, Estimate]:
     """Estimate mean and standard deviation if the weights are reliable.
 
@@ -288,17 +297,17 @@ def weighted_moments(
         weight. This criterion must not depend on the values, since samples without an outlier
         underestimate the scatter.
     """
-    mean, sd = moments_of_rows(values, weights, part)
-    of_samples = per_sample(weights, part)
+    mean, sd = moments_of_rows(values, weights, dependence)
+    of_samples = dependence.sums_of_samples(weights)
     differ = tail_shape(of_samples) > -inf
     why = too_large(largest_share(of_samples), len(of_samples)) if differ else ""
-    return trusted(mean, weights * values, part), Estimate(reason=why) if why else sd
+    return if_reliable(mean, weights * values, dependence), Estimate(reason=why) if why else sd
 
 
-def trusted(
+def if_reliable(
     estimate: Estimate,
-    pulls: Floats,
-    part: Replicates,
+    contributions: Floats,
+    dependence: Dependence,
     most: float = inf,
     hopeless: str = HOPELESS,
 ) -> Estimate:
@@ -307,16 +316,16 @@ def trusted(
     Parameters
     ----------
     estimate : Estimate
-    pulls : ndarray, shape (n,)
+    contributions : ndarray, shape (n,)
         Weights; for a mean of unbounded numbers, weights times these numbers.
-    part : ndarray of int, shape (n,), or None
+    dependence : Dependence
     most : float, optional
         Upper limit of the weight of a row.
     hopeless : str, optional
         Reason to give if a larger sample would not help.
     """
-    of_samples = per_sample(np.abs(pulls), part)
-    if carries_little(most, len(of_samples)):
+    of_samples = dependence.sums_of_samples(np.abs(contributions))
+    if is_negligible(most, len(of_samples)):
         return estimate
     why = refusal(tail_shape(of_samples), len(of_samples), hopeless)
     return Estimate(reason=why) if why else estimate

@@ -12,7 +12,7 @@ from scipy.stats import binomtest
 
 from uq.assess.answer.repeat_interval import OPENING
 from uq.assess.findings import Findings
-from uq.result.elements import independent_rows, labels, named_elements, replicates_of
+from uq.result.elements import dependence_of, independent_rows, labels, named_elements
 from uq.result.result import Result
 from uq.result.result_file import failed
 
@@ -31,7 +31,7 @@ class Checker:
     def _denied_by_rows(self, conclusions):
         for quantity in conclusions.quantities:
             checks = (
-                self.promise,
+                self.tolerance_bound,
                 self.own_error,
                 self.range,
                 self.ranking,
@@ -74,18 +74,20 @@ class Checker:
         values = self.values(quantity)
         return values[~np.isnan(values)]
 
-    def promise(self, quantity):
+    def tolerance_bound(self, quantity):
         """Count the rows beyond a bound; compare a quantile with that of the rows."""
-        if quantity.promise is None or not quantity.promise.sentence:
+        if quantity.tolerance_bound is None or not quantity.tolerance_bound.sentence:
             return
-        text, values = quantity.promise.sentence, self.defined_values(quantity)
+        text, values = quantity.tolerance_bound.sentence, self.defined_values(quantity)
         piles = r"([\d.]+) % of the rows have the (largest|smallest) value, ([^\s:]+)"
         for share, which, last in re.findall(piles, text):
             end = values.max() if which == "largest" else values.min()
             there = 100 * (values == end).mean()
             if abs(there - float(share)) > 0.06 or there < 5:
                 yield text
-            if not np.isclose(float(last.rstrip(".,")) * quantity.promise.unit.per, end, rtol=0.01):
+            if not np.isclose(
+                float(last.rstrip(".,")) * quantity.tolerance_bound.unit.per, end, rtol=0.01
+            ):
                 yield text
         text = re.sub(rf" ?{piles}[^.]*\.", "", text)
         if not text:
@@ -95,7 +97,9 @@ class Checker:
                 yield text
             pattern = r"at least (\S+) % (\D+?) (-?[\d.e+-]+)"
             for coverage, side, bound in re.findall(pattern, text):
-                below = (values < float(bound.rstrip(".")) * quantity.promise.unit.per).mean()
+                below = (
+                    values < float(bound.rstrip(".")) * quantity.tolerance_bound.unit.per
+                ).mean()
                 share = below if re.search("within|below", side) else 1 - below
                 if coverage != "95" or not 0.94 < share < 0.995:
                     yield f"{text} {share}"
@@ -119,11 +123,11 @@ class Checker:
         (error,) = named_elements(
             self.rows, f"{quantity.output}_error{quantity.name[len(quantity.output) :]}"
         )
-        sizes, per = np.abs(error.values), quantity.promise.unit.per
+        sizes, per = np.abs(error.values), quantity.tolerance_bound.unit.per
         moved = re.findall(r"gives (\S+)(?:.*? and (\S+))?", sentence.split(". ")[0])
         shown = [float(each.rstrip(".")) for each in (moved[0] if moved else ()) if each]
-        lower = np.sort(values - sizes), quantity.promise.lower, -1
-        upper = np.sort(values + sizes), quantity.promise.upper, 1
+        lower = np.sort(values - sizes), quantity.tolerance_bound.lower, -1
+        upper = np.sort(values + sizes), quantity.tolerance_bound.upper, 1
         defined = [each for each in (lower, upper) if np.isfinite(each[1])]
         for bound, (there, now, _) in zip(shown, defined, strict=False):
             rank = np.searchsorted(np.sort(values), now * (1 + 1e-12))
@@ -188,7 +192,7 @@ class Checker:
             numbers, per = np.nan_to_num(self.hits(quantity, quantity.first)).astype(float), 100
             estimate = np.mean
         else:
-            numbers, per = self.values(quantity), 1 / quantity.promise.unit.per
+            numbers, per = self.values(quantity), 1 / quantity.tolerance_bound.unit.per
             p = shown.pop(0) / 100
             if round(p, 6) not in (0.05, 0.95):
                 yield prediction.sentence
@@ -205,8 +209,8 @@ class Checker:
 
     def width_again(self, numbers, estimate):
         """Return the width of the prediction interval, from rows drawn with replacement."""
-        random, part = np.random.default_rng(0), replicates_of(self.rows)
-        groups = np.arange(len(numbers)) if part is None else part
+        random, labels = np.random.default_rng(0), dependence_of(self.rows).labels
+        groups = np.arange(len(numbers)) if labels is None else labels
         rows = [np.flatnonzero(groups == group) for group in np.unique(groups)]
         drawn = (random.integers(len(rows), size=len(rows)) for _ in range(200))
         again = [estimate(numbers[np.concatenate([rows[i] for i in each])]) for each in drawn]

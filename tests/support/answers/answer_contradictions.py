@@ -42,11 +42,11 @@ def _of_quantity(quantity):
     )
     if low > median or median > high:
         yield "a range that is no range"
-    if quantity.promise is not None and (
-        quantity.promise.lower > low or quantity.promise.upper < high
+    if quantity.tolerance_bound is not None and (
+        quantity.tolerance_bound.lower > low or quantity.tolerance_bound.upper < high
     ):
-        if quantity.promise.coverage == 0.95:
-            yield f"{quantity.promise.sentence} {quantity.range.sentence}"
+        if quantity.tolerance_bound.coverage == 0.95:
+            yield f"{quantity.tolerance_bound.sentence} {quantity.range.sentence}"
     for event in quantity.events:
         at, below = float(re.search(r"[<>]([^<>]*)\)$", event.name)[1]), "<" in event.name
         share = event.share.value if below else 1 - event.share.value - event.undefined

@@ -108,16 +108,17 @@ def denied_advice(ds, advice, conclusions):
         yield from _denied_law(ds, each)
     told = (
         re.findall(
-            r"The (\w+) end of the 95 % interval of the (\S+) % quantile", advice.sure.promised
+            r"The (\w+) end of the 95 % interval of the (\S+) % quantile",
+            advice.sure.bound_sentence,
         )
         if advice.sure
         else [("lower", "5")]
     )
     if (
         told not in ([("lower", "5")], [("upper", "95")])
-        or conclusions.lead.promise.coverage != 0.95
+        or conclusions.lead.tolerance_bound.coverage != 0.95
     ):
-        yield advice.sure.promised if advice.sure else f"coverage of {tolerance.sentence}"
+        yield advice.sure.bound_sentence if advice.sure else f"coverage of {tolerance.sentence}"
     if tolerance.harms or (
         tolerance.wants_more is not None and tolerance.rises != tolerance.wants_more
     ):
@@ -132,7 +133,7 @@ def _before(lead, tolerance):
         return next(
             event.share.value for event in lead.events if event.predicate in tolerance.statistic
         )
-    return lead.promise.quantiles["95 %" in tolerance.statistic].value
+    return lead.tolerance_bound.quantiles["95 %" in tolerance.statistic].value
 
 
 def _denied_law(ds, tolerance):
@@ -155,21 +156,23 @@ def _denied_law(ds, tolerance):
 
 def _denied_besides(ds, advice, lead):
     """Compare what could be promised, and what gets worse, with the same rows weighted anew."""
-    for sure in [tolerance for tolerance in advice.effects if tolerance.promise is not None]:
+    for sure in [
+        tolerance for tolerance in advice.effects if tolerance.tolerance_bound is not None
+    ]:
         document, p = uq.trace(ds, sure.key), re.search(r"quantiles/(\S+)", sure.key)[1]
         plain = uq.trace(ds, sure.key.partition("]/")[2])  # the same key, of the study's own laws
         end, away = ("low", -1) if float(p) < 0.5 else ("high", 1)
         fresh, before = document[end] / sure.unit.per, plain[end] / sure.unit.per
-        if not failed(ds).any() and bool(sure.promised) != (away * (fresh - before) < 0):
+        if not failed(ds).any() and bool(sure.bound_sentence) != (away * (fresh - before) < 0):
             yield f"{sure.sentence} {fresh} {before}"
-        if not sure.promised:
+        if not sure.bound_sentence:
             continue
-        *_, bound, studied = numbers_in(sure.promised)
+        *_, bound, studied = numbers_in(sure.bound_sentence)
         if not failed(ds).any() and not 0 <= away * (studied - before) <= 0.01 * abs(before):
-            yield f"{sure.promised} {before}"
+            yield f"{sure.bound_sentence} {before}"
         value = document["value"] / sure.unit.per
         if not 0 <= away * (bound - fresh) <= 0.01 * abs(fresh) or away * (bound - value) < 0:
-            yield f"{sure.promised} {fresh}"
+            yield f"{sure.bound_sentence} {fresh}"
     for each in advice.harmed:
         then = numbers_in(re.split(r" would \w+ to ", each.besides)[1])
         document, per = uq.trace(ds, each.key), 100 if each.is_share else 1 / each.unit.per

@@ -3,8 +3,8 @@
 from computed import study_of
 
 from uq.assess.integrated_inputs import elements_with_laws, why_not_integrated
-from uq.assess.population import Population
-from uq.result.elements import independent_rows, replicates_of
+from uq.assess.weighted_mixture import WeightedMixture
+from uq.result.elements import dependence_of, independent_rows
 from uq.result.result import Result
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
@@ -30,7 +30,7 @@ def scaled_study(uncertain, design=None, samples=400, **tables):
 def populated(ds):
     rows = independent_rows(ds)
     element = next(elements_with_laws(Result(rows), ["life"]))
-    return Population(element, replicates_of(rows)), why_not_integrated(Result(rows), element)
+    return WeightedMixture(element, dependence_of(rows)), why_not_integrated(Result(rows), element)
 
 
 WHOLE = {"a": lognormal(0.5), "z": NORMAL}

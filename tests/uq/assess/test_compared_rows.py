@@ -5,7 +5,7 @@ import pytest
 from computed import asking, compared, kinds, linear, with_output, with_status
 from nested_studies import nested_result
 
-from uq.assess.pairing import Kinship, kinship
+from uq.assess.pairing import Pairing, pairing
 from uq.contract import Status
 from uq.result.result import Result
 from uq.stats.intervals import wilson_interval
@@ -90,10 +90,10 @@ def test_elements_of_one_result_alone_are_named():
 def test_replicates_are_pairs_only_where_both_results_have_as_many():
     four, eight = (linear("sobol", samples=16, replicates=count) for count in (4, 8))
     assert (
-        kinship(Result(four), Result(linear("halton", samples=32, replicates=4)))
-        is Kinship.REPLICATES
+        pairing(Result(four), Result(linear("halton", samples=32, replicates=4)))
+        is Pairing.REPLICATES
     )
-    assert kinship(Result(four), Result(eight)) is Kinship.UNKNOWN
+    assert pairing(Result(four), Result(eight)) is Pairing.UNKNOWN
 
 
 @pytest.mark.parametrize(("method", "replicates"), [("monte-carlo", 1), ("sobol", 4)])

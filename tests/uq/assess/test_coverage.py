@@ -28,6 +28,7 @@ from uq.assess.statistics.moments import between_share
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.survival import survival
 from uq.result.elements import elements_of
+from uq.stats.dependent_rows import Dependence
 
 pytestmark = pytest.mark.slow
 
@@ -185,7 +186,7 @@ def test_variance_between_two_regimes(design):
     inputs = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
     for ds in repeat("linear", design, inputs):
         codes = (ds["x4"].values > 0.7).astype(int)
-        replicate = None if design[0] == "monte-carlo" else ds["replicate"].values
-        share = between_share(ds["x1"].values + 2.0 * codes, codes, replicate)
+        labels = None if design[0] == "monte-carlo" else ds["replicate"].values
+        share = between_share(ds["x1"].values + 2.0 * codes, codes, Dependence(labels))
         tally.add("between", between / (between + 1 / 12), share.low, share.high)
     tally.check()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from uq.assess.effects import effects, event_curve
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import Dependence
 
 RNG = np.random.default_rng(5)
 
@@ -38,7 +38,8 @@ def test_rows_that_agree_count_once():
     x = np.repeat(RNG.normal(size=100), 10)
     y = x + np.repeat(RNG.normal(size=100), 10)
     (alone,) = effects(y, {"x": x}).values()
-    (together,) = effects(y, {"x": x}, Clusters(np.repeat(np.arange(100), 10), 100)).values()
+    samples = Dependence(np.repeat(np.arange(100), 10), samples=100, are_samples=True)
+    (together,) = effects(y, {"x": x}, samples).values()
     wide, narrow = (slope.slope.high - slope.slope.low for slope in (together, alone))
     assert wide == pytest.approx(10**0.5 * narrow, rel=0.1)
 

@@ -10,6 +10,7 @@ from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.summary import summarise
 from uq.assess.summary_table import summary
 from uq.result.result import Result
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate, failed_bounds_text
 from uq.stats.intervals import share_interval
 
@@ -178,7 +179,7 @@ def test_bounds_are_never_within_the_interval_where_replicates_scatter_less_with
     assert not (curve["failed_low"] > curve["low"]).any()
     assert not (curve["failed_high"] < curve["high"]).any()
     hits, failed = hit == 1.0, np.arange(256) == 32
-    of = np.repeat(np.arange(4), 64)
+    of = Dependence(np.repeat(np.arange(4), 64))
     bounds, plain = (
         failed_share_bounds(hits, failed, of),
         share_interval(hits[~failed], of[~failed]),

@@ -31,6 +31,7 @@ from uq.explore.rare_events import rare_event
 from uq.explore.updating import update
 from uq.learning.answer import learnt
 from uq.result.result import Result
+from uq.stats.dependent_rows import Dependence
 from uq.stats.order_statistics import rows_for_bound
 
 FAR = 1e12
@@ -136,8 +137,9 @@ def test_squares_that_overflow_or_vanish_change_no_number(size):
         assert values(entry, kind) == [size * value for value in values(expected, kind)]
     replicated = linear(method="latin-hypercube", samples=32, replicates=4)
     inputs = {name: replicated[name].values for name in ("x1", "x2", "x3", "x4")}
+    replicates = Dependence(replicated["replicate"].values)
     slope, expected = (
-        effects(factor * replicated["y"].values, inputs, replicated["replicate"].values)["x1"].slope
+        effects(factor * replicated["y"].values, inputs, replicates)["x1"].slope
         for factor in (size, 1.0)
     )
     assert (slope.low, slope.high) == (size * expected.low, size * expected.high)

@@ -128,7 +128,7 @@ def test_bounds_that_lack_rows_are_not_settled():
     assert f"T{sentence}. More rows would not help." in verdict(findings)
     advice = {remedy.rule: remedy.text for remedy in conclude(findings).advice}
     assert f"t{sentence}" in advice["failed"] and "joint" not in advice.get("rows", "")
-    why = quantities(findings)[0].promise.basis
+    why = quantities(findings)[0].tolerance_bound.basis
     assert "of the rows failed and count as beyond it" in why
 
 
@@ -158,9 +158,11 @@ def test_mistakes_are_one_line(asked, method, words):
 
 def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     ds = kinds(samples=300, analysis={"joint_bounds": {"work": "upper", "angle": "both"}})
-    promises = {quantity.name: quantity.promise for quantity in quantities(Findings(Result(ds)))}
+    tolerance_bounds = {
+        quantity.name: quantity.tolerance_bound for quantity in quantities(Findings(Result(ds)))
+    }
     bounds = summarised(ds)["outputs"]
-    work, angle = promises["work[side=left]"], promises["angle"]
+    work, angle = tolerance_bounds["work[side=left]"], tolerance_bounds["angle"]
     assert work.upper == bounds["work[side=left]"]["joint_bounds"]["upper"] and np.isnan(work.lower)
     assert work.upper > bounds["work[side=left]"]["quantiles"]["0.95"]["value"]
     words = r"With 95 % confidence, at least 95 % of values are below .*, within the joint bounds"
@@ -169,18 +171,22 @@ def test_the_answer_promises_the_joint_bounds_that_a_study_asks_for():
     assert "% of defined values are above " in angle.sentence
     assert " and are below " in angle.sentence
     # An output that the study does not name keeps a bound of its own.
-    assert not promises["life[side=left,depth=0.5]"].joint
-    promise = conclude(Findings(Result(ds))).fact.json["quantities"]["work[side=left]"]["promise"]
-    assert promise["joint"] == ["work", "angle"] and promise["upper"] == work.upper
+    assert not tolerance_bounds["life[side=left,depth=0.5]"].joint
+    tolerance_bound = conclude(Findings(Result(ds))).fact.json["quantities"]["work[side=left]"][
+        "promise"
+    ]
+    assert tolerance_bound["joint"] == ["work", "angle"] and tolerance_bound["upper"] == work.upper
 
 
 def test_joint_bounds_that_lack_rows_are_not_replaced_by_single_ones():
     ds = kinds(samples=80, analysis={"joint_bounds": {"work": "upper"}})
-    promise = next(
+    tolerance_bound = next(
         quantity for quantity in quantities(Findings(Result(ds))) if quantity.output == "work"
-    ).promise
-    assert np.isnan(promise.upper) and "With 95 % confidence" not in promise.sentence
-    assert promise.basis.startswith("No joint tolerance bound: 93 rows are required.")
+    ).tolerance_bound
+    assert (
+        np.isnan(tolerance_bound.upper) and "With 95 % confidence" not in tolerance_bound.sentence
+    )
+    assert tolerance_bound.basis.startswith("No joint tolerance bound: 93 rows are required.")
 
 
 def test_both_joint_bounds_of_one_output_are_one_sentence():
@@ -192,4 +198,4 @@ def test_both_joint_bounds_of_one_output_are_one_sentence():
     }
     (quantity,) = quantities(Findings(Result(computed(study_of(tables)))))
     words = r"With 95 % confidence, at least 95 % of values are above \S+ and are below \S+\."
-    assert re.fullmatch(words, quantity.promise.sentence), quantity.promise.sentence
+    assert re.fullmatch(words, quantity.tolerance_bound.sentence), quantity.tolerance_bound.sentence

@@ -17,6 +17,7 @@ from uq.cli.summary_tables import show_summary
 from uq.files.whole_files import write
 from uq.render.html.outcomes import outcomes, result_tables
 from uq.result.result import Result
+from uq.stats.dependent_rows import Dependence
 from uq.stats.intervals import ONE_ROW
 from uq.stats.moments import moments, sd_interval, standard_deviation
 
@@ -139,20 +140,20 @@ def test_the_sd_of_replicates_holds_the_truth(law):
     for _ in range(200):  # Latin hypercubes of one input
         slices = rng.permuted(np.tile(np.arange(50), (8, 1)), axis=1)
         values = law.ppf((slices + rng.random((8, 50))) / 50).ravel()
-        low, high = sd_interval(values, np.repeat(np.arange(8), 50))
+        low, high = sd_interval(values, Dependence(np.repeat(np.arange(8), 50)))
         held += low < law.std() < high
     assert held >= 0.91 * 200
 
 
 def test_replicates_that_agree_have_no_interval_of_sd():
-    values, replicate = np.append(np.zeros(50), np.ones(50)), np.repeat([0, 1], 50)
-    assert np.isnan(sd_interval(values, replicate)).all()
+    values, replicates = np.append(np.zeros(50), np.ones(50)), Dependence(np.repeat([0, 1], 50))
+    assert np.isnan(sd_interval(values, replicates)).all()
 
 
 def test_the_sd_of_an_even_design_has_no_bias():
     even = (np.arange(125) + np.random.default_rng(0).random((400, 125))) / 125
-    replicate = np.repeat(np.arange(8), 125)
-    deviations = [standard_deviation(y, replicate) for y in even.reshape(50, 1000)]
+    replicates = Dependence(np.repeat(np.arange(8), 125))
+    deviations = [standard_deviation(y, replicates) for y in even.reshape(50, 1000)]
     assert np.mean(deviations) == pytest.approx(12**-0.5, rel=1e-4)
     assert standard_deviation(even[0]) == even[0].std(ddof=1)
 

@@ -6,17 +6,17 @@ from computed import asking, compared, computed, linear, summarised, with_output
 from nested_studies import nested, nested_result
 
 import uq as api
-from uq.assess.pairing import Kinship, kinship
+from uq.assess.pairing import Pairing, pairing
 from uq.assess.sampled_laws import drawn_inputs, laws_and_values
 from uq.assess.sensitivities import ONE_ROW, sensitivities
 from uq.assess.statistics.moments import between_share
 from uq.assess.stopping import interim_estimate
 from uq.assess.survival import survival
 from uq.errors import InputError
-from uq.result.elements import replicates_of
+from uq.result.elements import dependence_of
 from uq.result.nesting import one_of_each_sample
 from uq.result.result import Result
-from uq.stats.clusters import Clusters, linearised_means, random_groups
+from uq.stats.dependent_rows import Dependence, linearised_means
 from uq.stats.intervals import mean_interval, share_interval
 from uq.stats.moments import sd_interval
 from uq.stats.order_statistics import quantile_interval
@@ -26,7 +26,12 @@ SHARED_ALONE = {"x1": "shared"}
 
 def doubled(values, times=5):
     """Return values as if each sample had so many equal rows."""
-    return np.repeat(values, times), Clusters(np.repeat(np.arange(len(values)), times), len(values))
+    return np.repeat(values, times), samples_of(len(values), times)
+
+
+def samples_of(count, times):
+    """Return the dependence of so many samples of so many rows each."""
+    return Dependence(np.repeat(np.arange(count), times), samples=count, are_samples=True)
 
 
 def test_equal_rows_say_no_more_than_one():
@@ -52,7 +57,7 @@ def test_a_share_counts_samples_not_rows(share):
 
 def test_rows_that_differ_as_much_as_samples_count_fully():
     rng = np.random.default_rng(0)
-    of = Clusters(np.repeat(np.arange(500), 4), 500)
+    of = samples_of(500, 4)
     hits = rng.random(2000) < 0.3
     ends, rows = share_interval(hits, of), share_interval(hits)
     assert ends[1] - ends[0] == pytest.approx(rows[1] - rows[0], rel=0.15)
@@ -65,19 +70,19 @@ def test_unequal_samples_pull_by_their_rows():
 
 
 def test_groups_hold_whole_samples():
-    of = Clusters(np.repeat(np.arange(300), 3), 300)
-    groups = random_groups(of)
+    of = samples_of(300, 3)
+    groups = of.groups()
     assert len(np.unique(groups)) == 32
-    assert all(len(np.unique(groups[of == sample])) == 1 for sample in range(300))
+    assert all(len(np.unique(groups[of.labels == sample])) == 1 for sample in range(300))
     sizes = np.unique(groups, return_counts=True)[1]
     assert np.ptp(sizes) <= 3
-    assert random_groups(np.arange(5)).tolist() == [0, 1, 2, 3, 4]
+    assert Dependence(np.arange(5)).groups().tolist() == [0, 1, 2, 3, 4]
 
 
 def test_what_depends_on_the_sample_alone_has_the_interval_of_the_samples():
     ds = nested_result(levels=SHARED_ALONE, samples=200, analysis={"thresholds": {"y": [5.0]}})
     alone = one_of_each_sample(ds)
-    assert not Result(ds).has_independent_rows and isinstance(replicates_of(ds), Clusters)
+    assert not Result(ds).has_independent_rows and dependence_of(ds).are_samples
     statistics = summarised(ds)["outputs"]["y"]
     mean = statistics["mean_interval"]
     assert (mean["low"], mean["high"]) == pytest.approx(mean_interval(alone["y"].values))
@@ -142,12 +147,12 @@ def test_curves_of_equal_rows_are_as_wide_as_those_of_samples():
 
 def test_studies_with_one_seed_are_not_paired_row_by_row():
     ds, other = nested_result(), nested_result(seed=6)
-    assert kinship(Result(ds), Result(other)) is Kinship.INDEPENDENT
-    assert kinship(Result(ds), Result(ds)) is Kinship.ROWS_SAME
-    assert kinship(Result(ds), Result(nested_result(samples=32))) is Kinship.UNKNOWN
-    assert kinship(Result(ds), Result(linear(seed=5))) is Kinship.UNKNOWN
+    assert pairing(Result(ds), Result(other)) is Pairing.INDEPENDENT
+    assert pairing(Result(ds), Result(ds)) is Pairing.ROWS_SAME
+    assert pairing(Result(ds), Result(nested_result(samples=32))) is Pairing.UNKNOWN
+    assert pairing(Result(ds), Result(linear(seed=5))) is Pairing.UNKNOWN
     even = nested_result(method="sobol", replicates=4)
-    assert kinship(Result(even), Result(even)) is Kinship.REPLICATES
+    assert pairing(Result(even), Result(even)) is Pairing.REPLICATES
     difference = compared(ds, other)["outputs"]["y"]["mean"]["difference"]
     assert difference["low"] < 0 < difference["high"]
 
@@ -207,5 +212,5 @@ def test_a_damaged_nesting_is_refused():
 
 def test_the_variance_between_regimes_has_no_interval():
     ds = nested_result(samples=100)
-    share = between_share(ds["y"].values, (ds["x1"].values > 0.5).astype(int), replicates_of(ds))
+    share = between_share(ds["y"].values, (ds["x1"].values > 0.5).astype(int), dependence_of(ds))
     assert 0 < share.value < 1 and not share.has_interval

@@ -38,13 +38,13 @@ def test_a_share_is_the_same_in_table_answer_and_json(life, no_other_figures):
 
 
 def test_a_bound_is_the_same_in_table_and_answer(life):
-    promise = answer(life).fact.json["quantities"]["life"]["promise"]
-    assert promise["lower"] == summarised(life)["outputs"]["life"]["tolerance"]["lower"]
+    tolerance_bound = answer(life).fact.json["quantities"]["life"]["promise"]
+    assert tolerance_bound["lower"] == summarised(life)["outputs"]["life"]["tolerance"]["lower"]
     quantile = summarised(life)["outputs"]["life"]["quantiles"]["0.05"]
     for advice in answer(life).advice:
         for remedy in advice.effects:
-            if remedy.promised:  # the end of an interval is not called a bound
-                assert "With 95 % confidence" not in remedy.promised
+            if remedy.bound_sentence:  # the end of an interval is not called a bound
+                assert "With 95 % confidence" not in remedy.bound_sentence
                 assert remedy.before.low == pytest.approx(quantile["low"], rel=1e-12)
 
 
@@ -52,5 +52,5 @@ def test_the_bound_of_an_angle_is_that_of_its_magnitude_in_the_table_too():
     ds = kinds(samples=400, analysis={"outputs": ["angle"]})
     ds = asking(ds, tolerance={"coverage": 0.95, "confidence": 0.95}, thresholds={"angle": 0.5})
     bounds = summarised(ds)["outputs"]["angle"]["tolerance"]
-    promise = answer(ds).fact.json["quantities"]["angle"]["promise"]
-    assert np.isfinite(promise["upper"]) and promise["upper"] == bounds["magnitude"]
+    tolerance_bound = answer(ds).fact.json["quantities"]["angle"]["promise"]
+    assert np.isfinite(tolerance_bound["upper"]) and tolerance_bound["upper"] == bounds["magnitude"]

@@ -16,15 +16,19 @@ def values_that_err(size, design="monte-carlo", samples=1000, replicates=1, **as
 
 def test_a_bound_says_where_it_would_lie_if_every_value_were_wrong_by_its_error():
     above = answer(values_that_err(0.2, wanted={"y": "above"})).lead
-    assert np.isclose(above.own_error.members["lower"], above.promise.lower - 0.2, rtol=1e-12)
+    assert np.isclose(
+        above.own_error.members["lower"], above.tolerance_bound.lower - 0.2, rtol=1e-12
+    )
     assert above.own_error.members["upper"] is None
     assert above.own_error.sentence.startswith(
         "The bound excludes numerical error; including it gives"
-        f" {above.promise.unit.text(above.own_error.members['lower'], -np.inf)}."
+        f" {above.tolerance_bound.unit.text(above.own_error.members['lower'], -np.inf)}."
     )
     below = answer(values_that_err(-0.2, wanted={"y": "below"})).lead
-    assert np.isclose(below.own_error.members["upper"], below.promise.upper + 0.2, rtol=1e-12)
-    worse = below.promise.unit.text(below.own_error.members["upper"], np.inf)
+    assert np.isclose(
+        below.own_error.members["upper"], below.tolerance_bound.upper + 0.2, rtol=1e-12
+    )
+    worse = below.tolerance_bound.unit.text(below.own_error.members["upper"], np.inf)
     assert f"including it gives {worse}." in below.own_error.sentence
     both = answer(values_that_err(0.2)).lead.own_error.sentence
     assert both.startswith("The bounds exclude numerical error; including it gives ")
@@ -47,7 +51,7 @@ def test_an_error_that_moves_no_digit_is_not_worth_a_word(size):
 
 def test_without_a_bound_it_is_named_whose_error_it_is():
     few = answer(values_that_err(0.5, samples=10)).lead
-    assert few.promise.sentence == ""
+    assert few.tolerance_bound.sentence == ""
     assert few.own_error.sentence.startswith("The mean square of numerical error is")
 
 
@@ -65,7 +69,7 @@ def test_rows_that_are_not_independent_move_their_quantile():
     ds = values_that_err(0.2, "saltelli", 64, 8, wanted={"y": "above"})
     lead = answer(ds).lead
     assert np.isclose(
-        lead.own_error.members["lower"], lead.promise.quantiles[0].value - 0.2, rtol=1e-9
+        lead.own_error.members["lower"], lead.tolerance_bound.quantiles[0].value - 0.2, rtol=1e-9
     )
     assert lead.own_error.sentence.startswith("The quantile excludes numerical error; ")
 
@@ -80,7 +84,7 @@ def a_life_that_errs(relative):
 def test_errors_of_lives_are_relative_and_a_missed_accuracy_is_said():
     ds = a_life_that_errs(0.1)
     lead = answer(ds).lead
-    assert np.isclose(lead.own_error.members["lower"], 0.9 * lead.promise.lower)
+    assert np.isclose(lead.own_error.members["lower"], 0.9 * lead.tolerance_bound.lower)
     assert np.isclose(
         lead.own_error.members["share_of_variance"], 0.01 / np.var(np.log(ds["life"].values))
     )
@@ -99,7 +103,7 @@ def test_lives_without_an_end_and_rows_that_state_no_error_stay_as_they_are():
     lead = answer(ds).lead
     assert lead.own_error.members["rows_stating_none"] == 50
     assert "50 rows state no error" in lead.own_error.sentence
-    assert lead.own_error.members["lower"] == lead.promise.lower
+    assert lead.own_error.members["lower"] == lead.tolerance_bound.lower
 
 
 def test_its_numbers_are_in_the_json_and_are_traced():

@@ -9,6 +9,7 @@ from uq.assess.statistics.moments import between_share
 from uq.contract import Status
 from uq.errors import InputError
 from uq.indices.given_data import DUMMIES
+from uq.stats.dependent_rows import Dependence
 
 
 def test_inputs_of_a_regime_are_distinguished_from_those_of_the_rest():
@@ -94,7 +95,7 @@ def test_variance_between_regimes_of_noise_has_no_interval():
     assert abs(split.value) < 0.03 and np.isnan((split.low, split.high)).all()
     # By hand: 1, 2 | 4, 6 has means 1.5 and 5, variance 59/16, of which 49/16 between.
     four, pairs = np.array([1.0, 2.0, 4.0, 6.0]), np.array([0, 0, 1, 1])
-    assert between_share(four, pairs, np.zeros(4, int)).value == pytest.approx(49 / 59)
+    assert between_share(four, pairs, Dependence(np.zeros(4, int))).value == pytest.approx(49 / 59)
     # Of independent rows, less what chance makes of it: 1 - (10/59) 3/2.
     assert between_share(four, pairs).value == pytest.approx(44 / 59)
     for y, codes in (([1.0, 1.0, 1.0, 1.0], [0, 0, 1, 1]), ([1.0, 2.0], [0, 0]), ([], [])):

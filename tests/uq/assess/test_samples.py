@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import uq
-from uq.assess.population import as_sample
+from uq.assess.weighted_mixture import as_sample
 from uq.contract import Output
 from uq.result.element import Element
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.importance_weights import smoothed
 
-CHOSEN_IN = {"sample.py", "counted_rows.py", "population.py"}
+CHOSEN_IN = {"sample.py", "counted_rows.py", "weighted_mixture.py"}
 ROWS = 240
 
 
@@ -36,13 +36,15 @@ def life(**more):
 
 
 LOGS = 0.1 * np.random.default_rng(3).normal(size=ROWS)
-EVEN = np.arange(ROWS) % 8
+EVEN = Dependence(np.arange(ROWS) % 8)
 SAMPLES = {
-    "plain": as_sample(life(), None),
+    "plain": as_sample(life(), INDEPENDENT),
     "replicates": as_sample(life(), EVEN),
-    "clusters": as_sample(life(), Clusters(np.arange(ROWS) // 4, 60, True)),
-    "weighted": as_sample(life(weights=smoothed(LOGS).weights), None, weights=smoothed(LOGS)),
-    "laws": as_sample(life(law=HalvedLives()), None),
+    "clusters": as_sample(life(), Dependence(np.arange(ROWS) // 4, samples=60, are_samples=True)),
+    "weighted": as_sample(
+        life(weights=smoothed(LOGS).weights), INDEPENDENT, weights=smoothed(LOGS)
+    ),
+    "laws": as_sample(life(law=HalvedLives()), INDEPENDENT),
     "laws in replicates": as_sample(life(law=HalvedLives()), EVEN),
 }
 
@@ -84,7 +86,7 @@ def test_no_caller_tells_the_kinds_of_rows_apart():
         if path.name not in CHOSEN_IN
         for node in ast.walk(ast.parse(path.read_text()))
         if isinstance(node, ast.Name)
-        and node.id in ("CountedRows", "Population")
+        and node.id in ("CountedRows", "WeightedMixture")
         or isinstance(node, ast.Attribute)
         and node.attr == "is_plain"
     }

@@ -185,8 +185,8 @@ def test_outputs_that_the_study_names_are_shown():
     expected += ["q0.5", "q0.5_low", "q0.5_high"]
     lives = [f"{name}{end}" for name in ("B1", "B10", "B50") for end in ("", "_low", "_high")]
     counts = ["never", "censored", "undefined", "failed"]
-    promised = [*expected, *counts, *lives]
-    assert [column for column in table.columns if column in promised] == promised
+    ordered = [*expected, *counts, *lives]
+    assert [column for column in table.columns if column in ordered] == ordered
     assert table.loc["work[side=left]", "mean"] == pytest.approx(0.5, abs=0.2)
 
 

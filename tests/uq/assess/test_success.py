@@ -36,7 +36,7 @@ def test_the_latest_time_is_promised(locking):
     assert "10 % by" in labels and "B10" not in labels
     assert "B10" in summarised(locking)["outputs"]["locking"]["b_lives"]  # a key is kept
     lead = answer(locking).lead
-    assert np.isnan(lead.promise.lower) and np.isfinite(lead.promise.upper)
+    assert np.isnan(lead.tolerance_bound.lower) and np.isfinite(lead.tolerance_bound.upper)
     assert any("succeed within 2 s" in str(event) for event in lead.events)
 
 
@@ -54,7 +54,7 @@ def test_a_report_speaks_of_success(locking):
     assert table.header[2:5] == ("1 % by", "10 % by", "50 % by")
     never = locking.copy(deep=True)
     never["locking"][:100] = np.inf
-    promise = answer(asking(never, outputs=["locking"])).lead.promise
-    assert promise.reason == "" or "too few succeed" in promise.reason
+    tolerance_bound = answer(asking(never, outputs=["locking"])).lead.tolerance_bound
+    assert tolerance_bound.reason == "" or "too few succeed" in tolerance_bound.reason
     tables = list(result_tables(outcomes(Result(never), summarise(Result(never)))))
     assert any("rows never succeeding" in shown.header for shown in tables)

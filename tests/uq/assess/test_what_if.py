@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from benchmarks.coverage import scaled as counted
 from benchmarks.coverage.tally import LOW
-from uq.assess.population import Population
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.assess.what_if import read_changes, reweighted_summary, what_if, what_if_facts
 from uq.cli.app import app
 from uq.contract import Output
@@ -128,7 +128,7 @@ def test_quantiles_of_an_angle_keep_its_sign():
     nothing = np.zeros(400, dtype=bool)
     values = np.linspace(-2.0, 1.0, 400)
     element = Element("psi", "psi", angle, {}, values, nothing, nothing, None, np.ones(400))
-    quantile = Population(element, None).quantile(0.1)
+    quantile = WeightedMixture(element).quantile(0.1)
     assert quantile.low < -1.7 < quantile.high < -1.4
 
 

@@ -16,13 +16,14 @@ from uq.indices.methods import METHODS, fed_by
 from uq.indices.residual_variance import residual_variance
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
+from uq.stats.dependent_rows import Dependence
 
 REPETITIONS = 40
 
 
 def shares_of(y, replicate=None, **inputs):
     """Return the indices by the method that a plain sample feeds by default."""
-    more = {} if replicate is None else {"replicate": replicate}
+    more = {} if replicate is None else {"dependence": Dependence(replicate)}
     sample = DesignSample.plain(np.asarray(y, float), inputs, **more)
     return METHODS[fed_by(DESIGNS["monte-carlo"])[0]].indices(sample)
 

@@ -6,9 +6,9 @@ from learnt_studies import DEPTH, exactly, measured, wear
 from scipy import stats
 
 from uq.assess.integrated_inputs import elements_with_laws
-from uq.assess.population import Population
 from uq.assess.row_inputs import inputs_of
-from uq.assess.scale_laws import ConditionalScale, LearntScale
+from uq.assess.scale_laws import ConditionalScale, PosteriorScale
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.explore.updating import update
 from uq.learning.inspections import read_tables
 from uq.learning.integrated_input import dependent_outputs
@@ -84,7 +84,7 @@ def test_without_inspections_it_is_the_law_of_the_study(exponent):
     inputs = inputs_of(Result(wear(samples=50)))
     of = ("rate",), inputs.laws["rate"], inputs.bounds["rate"], exponent, inputs.values["rate"]
     lives = np.append(np.linspace(5e5, 2e6, 48), [np.inf, np.nan])
-    scale = LearntScale(*of, np.tile(np.linspace(-6, 6, 97), (50, 1)))
+    scale = PosteriorScale(*of, np.tile(np.linspace(-6, 6, 97), (50, 1)))
     study = ConditionalScale(*of, mean=np.zeros(50))
     for time in (4e5, 1e6, 3e6):
         np.testing.assert_allclose(scale.below(lives, time), study.below(lives, time), atol=1e-8)
@@ -138,4 +138,4 @@ def test_no_end_of_an_interval_lies_before_a_time_that_the_unit_outlived():
     unit = as_unit(update(rows, [told]), "A")
     (element,) = elements_with_laws(Result(unit), ["life"])
     assert element.law is None
-    assert Population(element, None).quantile(0.01).low >= SEEN
+    assert WeightedMixture(element).quantile(0.01).low >= SEEN

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from uq.stats.dependent_rows import Dependence
 from uq.stats.intervals import FEW, binomial_interval, exact_interval, share_interval
 
 ROWS = 2000
@@ -30,21 +31,21 @@ def test_exact_interval_is_scipys_and_takes_several_at_once(hits):
 
 @pytest.mark.parametrize("expected", [0.3, 1.0, 3.0, 8.0])
 def test_replicates_with_few_hits_cover(expected):
-    rng, held, replicate = np.random.default_rng(1), 0, np.arange(1024) % 8
+    rng, held, replicates = np.random.default_rng(1), 0, Dependence(np.arange(1024) % 8)
     for _ in range(400):
-        low, high = share_interval(rng.random(1024) < expected / 1024, replicate)
+        low, high = share_interval(rng.random(1024) < expected / 1024, replicates)
         held += low <= expected / 1024 <= high
     assert held >= 372  # 93 %
 
 
 def test_replicates_without_a_hit_have_an_upper_bound():
-    low, high = share_interval(np.zeros(800, dtype=bool), np.arange(800) % 8)
+    low, high = share_interval(np.zeros(800, dtype=bool), Dependence(np.arange(800) % 8))
     assert low == 0 and high == pytest.approx(1 - 0.025 ** (1 / 800))
 
 
 def test_hits_that_gather_in_one_replicate_count_for_less():
-    hits, replicate = np.arange(800) < 12, np.arange(800) // 100
-    scattered = share_interval(np.arange(800) % 67 == 0, replicate)
-    gathered = share_interval(hits, replicate)
+    hits, replicates = np.arange(800) < 12, Dependence(np.arange(800) // 100)
+    scattered = share_interval(np.arange(800) % 67 == 0, replicates)
+    gathered = share_interval(hits, replicates)
     assert hits.sum() == 12 < FEW
     assert np.diff(gathered) > 1.5 * np.diff(scattered)

@@ -3,6 +3,7 @@ import pytest
 from scipy import stats
 
 from uq.stats import intervals
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.intervals import mean_interval, share_interval
 from uq.stats.moments import corrected_mean_interval, hall_interval
 from uq.stats.order_statistics import quantile, quantile_interval, rows_for_bound, tolerance_bounds
@@ -10,6 +11,7 @@ from uq.stats.order_statistics import quantile, quantile_interval, rows_for_boun
 RNG = np.random.default_rng(3)
 VALUES = RNG.lognormal(size=200)
 REPLICATE = np.arange(200) % 8
+REPLICATES = Dependence(REPLICATE)
 
 
 def test_mean_of_independent_rows_is_students_interval_beyond_two_more_outliers():
@@ -33,7 +35,7 @@ def test_the_mean_of_a_skewed_law_is_covered(law):
 def test_mean_of_replicates_is_students_interval_of_their_means():
     means = [VALUES[REPLICATE == r].mean() for r in range(8)]
     expected = stats.t.interval(0.95, 7, loc=VALUES.mean(), scale=stats.sem(means))
-    assert mean_interval(VALUES, REPLICATE) == pytest.approx(expected)
+    assert mean_interval(VALUES, REPLICATES) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("values", [VALUES, -1e9 * VALUES, VALUES[:3] + 7])
@@ -57,8 +59,8 @@ def test_a_corrected_mean_of_replicates_allows_for_one_more_row_as_far_out():
     means = np.array([VALUES[REPLICATE == r].mean() for r in range(8)])
     low, high = hall_interval(means)
     more = (VALUES.max() - VALUES.mean()) / 200
-    assert corrected_mean_interval(VALUES, REPLICATE) == pytest.approx((low, high + more))
-    assert corrected_mean_interval(-VALUES, REPLICATE) == pytest.approx((-high - more, -low))
+    assert corrected_mean_interval(VALUES, REPLICATES) == pytest.approx((low, high + more))
+    assert corrected_mean_interval(-VALUES, REPLICATES) == pytest.approx((-high - more, -low))
 
 
 @pytest.mark.parametrize(
@@ -76,8 +78,8 @@ def test_share_of_independent_rows_is_exact_where_few_and_wilsons_elsewhere(hits
 def test_share_of_replicates_comes_from_their_scatter():
     # The same rows, dealt out so that replicates agree or differ.
     hits = np.arange(200) < 80
-    agreeing = share_interval(hits, (np.arange(200) * 8 - (np.arange(200) == 0)) % 7)
-    differing = share_interval(hits, np.arange(200) // 25)
+    agreeing = share_interval(hits, Dependence((np.arange(200) * 8 - (np.arange(200) == 0)) % 7))
+    differing = share_interval(hits, Dependence(np.arange(200) // 25))
     assert np.diff(agreeing) < 0.05
     assert np.diff(differing) > 0.5
     assert agreeing[0] < 0.4 < agreeing[1]
@@ -86,7 +88,7 @@ def test_share_of_replicates_comes_from_their_scatter():
 def test_share_of_replicates_stays_within_zero_and_one():
     hits = np.zeros(800, dtype=bool)
     hits[0] = True
-    low, high = share_interval(hits, np.arange(800) % 8)
+    low, high = share_interval(hits, Dependence(np.arange(800) % 8))
     assert 0 < low < 1 / 800 < high < 1
 
 
@@ -102,8 +104,8 @@ def test_quantile_has_no_bound_where_rows_are_too_few():
     assert np.isnan(low) and high in VALUES
     low, high = quantile_interval(VALUES[:20], 0.99)
     assert low in VALUES and np.isnan(high)
-    assert np.isnan(quantile_interval(VALUES, 0.001, REPLICATE)[0])
-    assert np.isnan(quantile_interval(VALUES, 0.999, REPLICATE)[1])
+    assert np.isnan(quantile_interval(VALUES, 0.001, REPLICATES)[0])
+    assert np.isnan(quantile_interval(VALUES, 0.999, REPLICATES)[1])
 
 
 def test_quantile_is_numpys_median_unbiased_one_and_knows_infinity():
@@ -117,37 +119,37 @@ def test_quantile_is_numpys_median_unbiased_one_and_knows_infinity():
 
 def test_interval_of_a_quantile_may_end_in_never():
     values = np.where(np.arange(200) < 104, VALUES, np.inf)
-    for replicate in (None, RNG.permutation(REPLICATE)):
-        low, high = quantile_interval(values, 0.5, replicate)
+    for dependence in (INDEPENDENT, Dependence(RNG.permutation(REPLICATE))):
+        low, high = quantile_interval(values, 0.5, dependence)
         assert np.isfinite(low) and high == np.inf
-        low, high = quantile_interval(values, 0.9, replicate)
+        low, high = quantile_interval(values, 0.9, dependence)
         assert low == np.inf and (high == np.inf or np.isnan(high))
 
 
 def test_no_interval_without_evidence():
     unknown = pytest.approx((np.nan, np.nan), nan_ok=True)
-    same = np.zeros(200, dtype=int)
+    same = Dependence(np.zeros(200, dtype=int))
     hits = VALUES > 1
     assert mean_interval(VALUES, same) == unknown
     assert share_interval(hits, same) == unknown
     assert quantile_interval(VALUES, 0.5, same) == unknown
     assert mean_interval(np.full(200, 0.1)) == unknown
-    assert mean_interval(np.full(200, 0.1), REPLICATE) == unknown
+    assert mean_interval(np.full(200, 0.1), REPLICATES) == unknown
     assert mean_interval(VALUES[:1]) == unknown
     assert mean_interval(VALUES[:0]) == unknown
     assert share_interval(hits[:0]) == unknown
     assert quantile_interval(VALUES[:0], 0.5) == unknown
     # Replicates that agree to the last bit say nothing about the error.
-    assert share_interval(np.arange(200) < 80, REPLICATE) == unknown
-    assert mean_interval(np.repeat(VALUES[:25], 8), REPLICATE) == unknown
+    assert share_interval(np.arange(200) < 80, REPLICATES) == unknown
+    assert mean_interval(np.repeat(VALUES[:25], 8), REPLICATES) == unknown
     assert share_interval(np.arange(200) < 0, same) == unknown
 
 
 def test_a_replicate_without_rows_does_not_count():
     gone = REPLICATE != 3
     shifted = np.where(REPLICATE > 3, REPLICATE - 1, REPLICATE)
-    assert mean_interval(VALUES[gone], REPLICATE[gone]) == mean_interval(
-        VALUES[gone], shifted[gone]
+    assert mean_interval(VALUES[gone], REPLICATES[gone]) == mean_interval(
+        VALUES[gone], Dependence(shifted[gone])
     )
 
 

@@ -6,7 +6,8 @@ from computed import linear, summarised
 from scipy.special import ndtri
 
 from uq.sampling.unit_cube import sobol
-from uq.stats.jumps import EvenReplicates, jumps
+from uq.stats.dependent_rows import Dependence
+from uq.stats.jumps import jumps
 
 
 @pytest.mark.parametrize(
@@ -34,5 +35,5 @@ def test_a_jump_near_an_end_is_not_taken_for_a_polynomial():
     place = 1 - 2.72 / 64
     u = sobol(0, 8, 4, 64, 0, 64).reshape(-1, 4)
     y = 4.0 * (u[:, 0] > place) + 0.2 * ndtri(u[:, 1])
-    marked = EvenReplicates(np.tile(np.arange(8), 64), u)
+    marked = Dependence(np.tile(np.arange(8), 64), u)
     assert jumps(y, marked.neighbours)[0] > 3.0

@@ -7,8 +7,8 @@ import pytest
 from learnt_studies import wear
 from scipy import special
 
-from uq.result.elements import replicates_of
-from uq.stats.importance_weights import per_sample, smoothed, tail_shape
+from uq.result.elements import dependence_of
+from uq.stats.importance_weights import smoothed, tail_shape
 from uq.stats.weighted_means import weighted_moments, weighted_share
 
 
@@ -22,12 +22,14 @@ def test_listed_values_are_no_tail():
 def test_samples_of_several_rows_are_smoothed_as_one():
     """Rows of a sample keep their proportions, and the shape stays that which was judged."""
     ds = wear(samples=1000, units=3)
-    rng, part = np.random.default_rng(1), replicates_of(ds)
+    rng, dependence = np.random.default_rng(1), dependence_of(ds)
     logs = 1.2 * rng.standard_normal((1000, 1)) + 2 * rng.standard_normal((1000, 3))
-    smoothing = smoothed(logs.ravel(), part)
+    smoothing = smoothed(logs.ravel(), dependence)
     changed = (np.log(smoothing.weights) - logs.ravel()).reshape(1000, 3)
     assert np.abs(np.ptp(changed, axis=1)).max() < 1e-9 and np.ptp(changed[:, 0]) > 0
-    assert tail_shape(per_sample(smoothing.weights, part)) == pytest.approx(smoothing.k, abs=0.1)
+    assert tail_shape(dependence.sums_of_samples(smoothing.weights)) == pytest.approx(
+        smoothing.k, abs=0.1
+    )
 
 
 def test_a_tail_that_begins_amid_equal_weights_is_bounded_where_they_are():

@@ -9,7 +9,7 @@ from input_studies import UNIFORM, refusal, tables
 
 import uq
 from uq.assess.convergence import running_estimates
-from uq.assess.pairing import Kinship, kinship
+from uq.assess.pairing import Pairing, pairing
 from uq.assess.survival import survival
 from uq.errors import InputError
 from uq.result.result import Result
@@ -185,8 +185,8 @@ def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
     folder, x = table
     first = result_of(folder, independent=True)
     assert (
-        kinship(Result(first), Result(result_of(folder, independent=True, seed=5)))
-        is Kinship.ROWS_IMPORTED
+        pairing(Result(first), Result(result_of(folder, independent=True, seed=5)))
+        is Pairing.ROWS_IMPORTED
     )
     comparison = compared(first, first)
     same = {"value": 0.0, "low": None, "high": None, "identical": True}
@@ -196,5 +196,5 @@ def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
     lines = ["x2,x1", *(f"{a!r},{b!r}" for b, a in (1 - x).tolist())]
     (folder / "rows.csv").write_text("\n".join(lines))
     other = result_of(folder, independent=True, seed=5)
-    assert kinship(Result(first), Result(other)) is Kinship.UNKNOWN_IMPORTED
+    assert pairing(Result(first), Result(other)) is Pairing.UNKNOWN_IMPORTED
     assert compared(first, other)["pairing"] == "unknown"

@@ -1,4 +1,4 @@
-"""The answer of a study: what can be promised, what decides it, and what to do.
+"""The answer of a study: tolerance bounds, main drivers, and what to do.
 
 Reading order; each part imports only those above it:
 
@@ -6,9 +6,9 @@ Reading order; each part imports only those above it:
     compared_indices   index of each input, with the half-width of its difference from another
     earliest           the rows that end first, their distinguishing inputs and regimes
     limits             ranges of the leading input in which the unwanted side of an event is
-    tolerance_bound    tolerance bound that can be promised of an output, and its likely range
+    tolerance_bound    tolerance bound of an output, and its likely range
     contributions      shares of single inputs and groups, with directions, sizes and sentences
-    bound_choice       choose the bound to promise, or quantiles in its place
+    bound_choice       choose the bound, or quantiles in its place
     tolerance_effects  effect of a tighter tolerance on one statistic, before and after
     rankings           ranking of inputs by their contribution to a target, with its sentences
     events             probabilities of the events that a study asks about

@@ -35,7 +35,7 @@ def answer(result: AnyResult) -> Answer:
     Examples
     --------
     >>> found = uq.answer(uq.run("studies/exponential-wear.toml"))
-    >>> found.lead.promise.lower < found.lead.range.low.value  # a cautious bound
+    >>> found.lead.tolerance_bound.lower < found.lead.range.low.value  # a cautious bound
     True
     """
     result = Result.of(result)

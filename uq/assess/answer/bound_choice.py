@@ -1,4 +1,4 @@
-"""Choose the bound to promise, or quantiles in its place, and move it by the rows' errors."""
+"""Choose the tolerance bound, or quantiles in its place, and move it by the rows' errors."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -38,7 +38,7 @@ CONFIDENCE = 0.95
 MIDDLE = 0.5
 
 
-def promise_of(
+def tolerance_bound_of(
     result: Result,
     described: Described,
     element: Element,
@@ -163,7 +163,7 @@ def end_verb(element: Element) -> str:
 
 
 def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
-    """Return a bound on the wrong side of its quantile; NaN if there is none.
+    """Return a bound on the wrong side of its quantile, which is then stated instead; else NaN.
 
     It occurs by chance with few rows, where integrated lives estimate the quantile more precisely.
     """
@@ -214,13 +214,13 @@ Sides = tuple[float, float]
 
 
 def own_error_of(
-    promise: ToleranceBound, described: Described, element: Element, context: Context
+    tolerance_bound: ToleranceBound, described: Described, element: Element, context: Context
 ) -> Fact | None:
     """Return the effect of the numerical errors of rows on a bound; None if rows state none.
 
     Parameters
     ----------
-    promise : ToleranceBound
+    tolerance_bound : ToleranceBound
     described : Described
         The statistics behind it.
     element : Element
@@ -239,21 +239,21 @@ def own_error_of(
     error = stated_error(context.rows, element)
     if error is None:
         return None
-    are_quantiles = not (isfinite(promise.lower) or isfinite(promise.upper))
-    bounds = promise.lower, promise.upper
+    are_quantiles = not (isfinite(tolerance_bound.lower) or isfinite(tolerance_bound.upper))
+    bounds = tolerance_bound.lower, tolerance_bound.upper
     if are_quantiles:
-        bounds = promise.quantiles[0].value, promise.quantiles[1].value
+        bounds = tolerance_bound.quantiles[0].value, tolerance_bound.quantiles[1].value
     worse = [nan, nan]
     for side in (0, 1):
-        if isfinite(bounds[side]) and not promise.joint:
+        if isfinite(bounds[side]) and not tolerance_bound.joint:
             moved = off_by_error(element, error, (-1, 1)[side])
-            worse[side] = _bounds(promise, are_quantiles, moved, context)[side]
+            worse[side] = _bounds(tolerance_bound, are_quantiles, moved, context)[side]
     asked, missed = nan, 0.0
     for statistic in described.parts.get("accuracy", ()):
         facts = statistic.facts["accuracy"]
         asked, missed = facts["asked"], facts["share"] or 0.0
     share, unstated = error_share(element, error), stating_none(element, error)
-    moved_bounds = _moved(promise, bounds, (worse[0], worse[1]), are_quantiles)
+    moved_bounds = _moved(tolerance_bound, bounds, (worse[0], worse[1]), are_quantiles)
     text = ""
     if moved_bounds or share >= NOTABLE or unstated:
         variance = _of_variance(share, element.is_lifetime)
@@ -266,7 +266,9 @@ def own_error_of(
         "accuracy": asked,
         "rows_missing_it": missed,
     }
-    by_bound = promise.by_quantile if are_quantiles else (promise.by, promise.by)
+    by_bound = (
+        tolerance_bound.by_quantile if are_quantiles else (tolerance_bound.by, tolerance_bound.by)
+    )
     return Fact(
         {"sentence": text}
         | {name: estimate_json.number(value) for name, value in numbers.items()}
@@ -283,9 +285,11 @@ def own_error_of(
     )
 
 
-def _moved(promise: ToleranceBound, bounds: Sides, worse: Sides, are_quantiles: bool) -> str:
+def _moved(
+    tolerance_bound: ToleranceBound, bounds: Sides, worse: Sides, are_quantiles: bool
+) -> str:
     """Return a clause on the new bounds, of those that change in a shown digit."""
-    now, then = ([*_texts(promise.unit, ends)] for ends in (bounds, worse))
+    now, then = ([*_texts(tolerance_bound.unit, ends)] for ends in (bounds, worse))
     moved = [i for i in (0, 1) if then[i] and then[i] != now[i]]
     if not moved:
         return ""
@@ -323,7 +327,7 @@ def _missing(asked: float, missed: float, unstated: int) -> str:
 
 
 def _bounds(
-    promise: ToleranceBound, are_quantiles: bool, element: Element, context: Context
+    tolerance_bound: ToleranceBound, are_quantiles: bool, element: Element, context: Context
 ) -> Sides:
     """Return the bounds of other values of the same rows."""
     if not are_quantiles:
@@ -340,5 +344,5 @@ def _bounds(
     values = {
         statistic.key[-1]: statistic.best.estimate.value for statistic in quantiles(drawn, context)
     }
-    low, high = (values[repr(p)] for p in promise.probabilities)
+    low, high = (values[repr(p)] for p in tolerance_bound.probabilities)
     return low, high

@@ -222,8 +222,8 @@ def effects_of(
     targets: list[IndexTarget] = list(chosen(rows, method, [name]))
     if len(targets) != 1:
         return {}
-    columns, part = independent_inputs(rows), rows.replicates
-    by_input = effects(targets[0].values, columns, part, inputs)
+    columns = independent_inputs(rows)
+    by_input = effects(targets[0].values, columns, rows.dependence, inputs)
     return {name: effect for name, effect in by_input.items() if effect.slope.has_interval}
 
 

@@ -27,7 +27,8 @@ from uq.errors import InputError
 from uq.result.elements import Element
 from uq.result.row_choice import lowest_rows
 from uq.stats import estimate_json
-from uq.stats.intervals import Replicates, share_interval
+from uq.stats.dependent_rows import Dependence
+from uq.stats.intervals import share_interval
 from uq.text.numbers import grouped, percent
 
 _MOST_ROWS = 3
@@ -158,7 +159,7 @@ class Earliest:
 
 
 def earliest(
-    findings: Findings, element: Element, unit: DisplayUnit, part: Replicates
+    findings: Findings, element: Element, unit: DisplayUnit, dependence: Dependence
 ) -> Earliest | None:
     """Return the rows that fail first and their distinguishing inputs; None if none fails.
 
@@ -169,8 +170,8 @@ def earliest(
         A life, in the independent rows.
     unit : DisplayUnit
         Of its lives.
-    part : ndarray of int, shape (n,), or None
-        The replicate of each independent row.
+    dependence : Dependence
+        Of the independent rows.
     """
     try:
         chosen = lowest_rows(findings.result, element.name, _MOST_ROWS)
@@ -185,14 +186,14 @@ def earliest(
     places = earliest_rows(element)
     if len(places) < FEWEST:
         return lowest_lives
-    inputs = inputs_apart(findings.rows, places, findings.input_ranks, part)
+    inputs = inputs_apart(findings.rows, places, findings.input_ranks, dependence)
     return replace(
         lowest_lives,
         size=len(places),
         total=int(element.present.sum()),
         inputs=None if inputs is None else tuple(inputs),
         units=tuple(unit_of_input(findings.result, difference.name) for difference in inputs or ()),
-        regimes=tuple(regimes_of_first(findings.rows, places, part)),
+        regimes=tuple(regimes_of_first(findings.rows, places, dependence)),
     )
 
 

@@ -249,4 +249,4 @@ def event(findings: Findings, target: str, predicate: str, statistic: Statistic)
 def curve_over(rows: Result, target: str, method: str, over: str) -> EventCurve | None:
     """Return the probability of an event over an input."""
     hits = next(chosen(rows, method, [target])).values
-    return event_curve(hits, independent_inputs(rows)[over], rows.replicates)
+    return event_curve(hits, independent_inputs(rows)[over], rows.dependence)

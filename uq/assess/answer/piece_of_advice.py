@@ -70,8 +70,8 @@ class Advice:
 
     @property
     def sure(self) -> TighterTolerance | None:
-        """The first effect with a new promise."""
-        return next((tolerance for tolerance in self.effects if tolerance.promised), None)
+        """The first effect with a new tolerance bound."""
+        return next((tolerance for tolerance in self.effects if tolerance.bound_sentence), None)
 
     @property
     def harmed(self) -> list[TighterTolerance]:
@@ -81,6 +81,6 @@ class Advice:
     @property
     def text(self) -> str:
         """All sentences of the advice."""
-        sure = "" if self.sure is None else self.sure.promised
+        sure = "" if self.sure is None else self.sure.bound_sentence
         worse = [tolerance.besides for tolerance in self.harmed]
         return " ".join(filter(None, (self.sentence, sure, *worse, self.also)))

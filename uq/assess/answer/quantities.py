@@ -13,8 +13,8 @@ from uq.assess.answer.bound_choice import (
     end_verb,
     functions_of,
     own_error_of,
-    promise_of,
     quantile_of,
+    tolerance_bound_of,
     without_value,
 )
 from uq.assess.answer.earliest import Earliest, earliest
@@ -61,7 +61,7 @@ class Quantity:
     ----------
     name, words, meaning : str
         Of the element; in words, with and without its place within the output.
-    promise : ToleranceBound or None
+    tolerance_bound : ToleranceBound or None
     range : Range or None
     events : tuple of Event
     ranking : Ranking or None
@@ -72,7 +72,7 @@ class Quantity:
     scaled_by : tuple of str
         Assumed quantities to which all its lives, or their reciprocals, are proportional.
     own_error : Fact or None
-        Effect of the numerical errors of the rows on the promise.
+        Effect of the numerical errors of the rows on the bound.
     b_lives : tuple of Statistic
         Of a life.
     """
@@ -80,7 +80,7 @@ class Quantity:
     name: str
     words: str
     meaning: str
-    promise: ToleranceBound | None = None
+    tolerance_bound: ToleranceBound | None = None
     range: Range | None = None
     events: tuple[Event, ...] = ()
     ranking: Ranking | None = None
@@ -94,7 +94,7 @@ class Quantity:
         """Return everything about the quantity."""
         rows = None if result is None else result.independent
         parts = {
-            "promise": self.promise and self.promise.fact,
+            "promise": self.tolerance_bound and self.tolerance_bound.fact,
             "range": self.range and self.range.fact,
             "own_error": self.own_error,
         }
@@ -125,12 +125,12 @@ class Quantity:
     @property
     def is_life(self) -> bool:
         """Return whether the quantity is a life."""
-        return self.promise is not None and self.promise.is_life
+        return self.tolerance_bound is not None and self.tolerance_bound.is_life
 
     @property
     def is_success(self) -> bool:
         """Return whether the quantity is a life that ends with a success."""
-        return self.promise is not None and self.promise.ends == "succeed"
+        return self.tolerance_bound is not None and self.tolerance_bound.ends == "succeed"
 
     @property
     def wants_more(self) -> bool | None:
@@ -168,8 +168,8 @@ class Quantity:
 
     @property
     def first(self) -> Event | None:
-        """The event that comes first, if nothing can be promised."""
-        if self.promise is not None and self.promise.sentence:
+        """The event that comes first, if there is no tolerance bound."""
+        if self.tolerance_bound is not None and self.tolerance_bound.sentence:
             return None
         return next((event for event in self.events if event.sentence), None)
 
@@ -177,7 +177,7 @@ class Quantity:
     def repeated(self) -> Fact:
         """Prediction interval for another seed."""
         if self.first is None:
-            return repeated_quantile(self.promise, self.range, self.ranking)
+            return repeated_quantile(self.tolerance_bound, self.range, self.ranking)
         first = self.first
         return repeated_share(first.predicate, first.share, self.ranking, first.by)
 
@@ -188,12 +188,12 @@ class Quantity:
 
     @property
     def head(self) -> list[str]:
-        """Sentences on promise, subject, error and likely range, as far as known."""
-        sentences = [] if self.promise is None else [self.promise.sentence]
+        """Sentences on bound, subject, error and likely range, as far as known."""
+        sentences = [] if self.tolerance_bound is None else [self.tolerance_bound.sentence]
         if self.first is not None:
             sentences += [self.first.sentence, self.first.decided_by, self.first.limited]
         sentences.append(self.subject)
-        sentences += [] if self.promise is None else [self.promise.basis]
+        sentences += [] if self.tolerance_bound is None else [self.tolerance_bound.basis]
         sentences += [] if self.own_error is None else [self.own_error.sentence]
         sentences += [] if self.range is None else [self.range.sentence]
         return [*filter(None, sentences)]
@@ -310,14 +310,16 @@ def _quantity(
     typical = next(filter(isfinite, (middle.value, *others, shortest)), nan)
     unit = unit_for(element.units, abs(typical))
     fine = unit._replace(resolution=resolution_of(folded, _NARROW))
-    promise = promise_of(findings.result, described, element, context.analysis, wanted, fine)
+    tolerance_bound = tolerance_bound_of(
+        findings.result, described, element, context.analysis, wanted, fine
+    )
     by = {name: functions_of(best_quantile(described, p)) for name, p in _RANGE.items()}
     by["never"] = (never_ending, *context.sample(element).by["never_ending"])
     return Quantity(
         element.name,
         element_called(findings.result, element),
         readable(element.meaning),
-        promise,
+        tolerance_bound,
         Range(
             quantile_of(described, LOW),
             middle,
@@ -325,7 +327,7 @@ def _quantity(
             fine,
             element.is_angle,
             end_verb(element),
-            never_ending(element, context.replicate) if element.is_lifetime else NOTHING,
+            never_ending(element, context.rows.dependence) if element.is_lifetime else NOTHING,
             **without_value(element),
             is_life=element.is_lifetime,
             by=by,
@@ -333,11 +335,11 @@ def _quantity(
         tuple(events_of(findings, element, described)),
         _as_computed(ranking_of_element(findings, element, unit), described),
         wanted,
-        earliest(findings, element, unit, context.replicate)
+        earliest(findings, element, unit, context.rows.dependence)
         if _may_end_badly(findings.result, element)
         else None,
         assumed_scales(findings.result, element),
-        own_error_of(promise, described, folded, context),
+        own_error_of(tolerance_bound, described, folded, context),
         tuple(life for life in described.parts["b_lives"] if life.key[-1] in B_LIVES),
     ).with_limits()
 

@@ -20,7 +20,7 @@ from uq.assess.answer.wording import DisplayUnit, called, joined, sentence, twin
 from uq.assess.fact import Fact
 from uq.assess.findings import Findings
 from uq.assess.row_inputs import why_dependent
-from uq.assess.targets import FORMS, lightened, number_of, split_name
+from uq.assess.targets import FORMS, number_of, split_name, transformed_if_heavy
 from uq.errors import InputError, choices
 from uq.indices.index import S1, ST, IndexKind, Indices
 from uq.indices.methods import METHODS, fed_by, indices_of
@@ -364,7 +364,7 @@ def ranking_of_element(findings: Findings, element: Element, unit: DisplayUnit) 
     if method is None:
         return None
     target = number_of(element)
-    name = (target if METHODS[method].scale_free else lightened(target)).name
+    name = (target if METHODS[method].scale_free else transformed_if_heavy(target)).name
     verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
     if element.is_angle:  # only the ranking refers to the signed value
         verb = ("lowers its signed value", "raises its signed value")

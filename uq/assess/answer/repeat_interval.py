@@ -46,9 +46,9 @@ def found_again(estimate: Estimate, is_positive: bool) -> tuple[float, float]:
 
 
 def repeated_quantile(
-    promise: ToleranceBound | None, likely: Range | None, ranking: Ranking | None
+    tolerance_bound: ToleranceBound | None, likely: Range | None, ranking: Ranking | None
 ) -> Fact:
-    """Return the prediction interval of the quantile that a promise bounds, and of the ranking.
+    """Return the prediction interval of the quantile that is bounded, and of the ranking.
 
     A low quantile is cut at the upper end of the likely range, and a high one at its lower end,
     which matters where values jump.
@@ -58,20 +58,25 @@ def repeated_quantile(
     Fact
         With the ends as ``expected`` if they are known, and the leading input in its sentence.
     """
-    if promise is not None:
-        quantiles = zip(promise.probabilities, promise.quantiles, promise.by_quantile, strict=True)
+    if tolerance_bound is not None:
+        quantiles = zip(
+            tolerance_bound.probabilities,
+            tolerance_bound.quantiles,
+            tolerance_bound.by_quantile,
+            strict=True,
+        )
         for p, quantile, by in quantiles:
-            low, high = found_again(quantile, promise.is_life)
+            low, high = found_again(quantile, tolerance_bound.is_life)
             if isfinite(low):
                 if likely is not None and p < 0.5:
                     high = min(high, max(likely.high.value, quantile.high))
                 elif likely is not None:
                     low = max(low, min(likely.low.value, quantile.low))
-                of_magnitudes = " of the magnitudes" if promise.of_magnitude else ""
+                of_magnitudes = " of the magnitudes" if tolerance_bound.of_magnitude else ""
                 subject = f"the {100 * p:.3g} % quantile{of_magnitudes}"
-                first, last = promise.unit.text(low), promise.unit.text(high)
+                first, last = tolerance_bound.unit.text(low), tolerance_bound.unit.text(high)
                 # equal to the digits shown
-                both = promise.unit.between(low, high)
+                both = tolerance_bound.unit.between(low, high)
                 number = f"again be {first}" if first == last else f"be {both}"
                 return _repeated(f"{subject} would {number}", (low, high), ranking, by)
     return _repeated("", (nan, nan), ranking)

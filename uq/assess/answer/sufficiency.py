@@ -26,8 +26,8 @@ POINT = 0.01
 """... or at most a percentage point."""
 
 BOUND = 0.1
-"""A promise is settled if it is within this fraction of the quantile that it bounds (of a life),
-or of the likely range."""
+"""A tolerance bound is settled if it is within this fraction of the quantile that it bounds (of a
+life), or of the likely range."""
 
 MOST = 100.0
 """Largest factor on the sample size that is predicted from its root."""
@@ -53,8 +53,8 @@ def unsettled(quantity: Quantity) -> Iterator[Shortfall]:
     """
     for event in quantity.events:
         yield from unsettled_share(event)
-    if quantity.promise is not None:
-        yield from _of_promise(quantity.promise, quantity)
+    if quantity.tolerance_bound is not None:
+        yield from _of_tolerance_bound(quantity.tolerance_bound, quantity)
     ranking = quantity.ranking
     if ranking is not None and isfinite(ranking.rows_factor):
         yield ranking.reason, ranking.rows_factor
@@ -92,25 +92,25 @@ def unsettled_share(event: Event) -> Iterator[Shortfall]:
         yield clause, (half / goal) ** 2
 
 
-def _of_promise(promise: ToleranceBound, quantity: Quantity) -> Iterator[Shortfall]:
+def _of_tolerance_bound(tolerance_bound: ToleranceBound, quantity: Quantity) -> Iterator[Shortfall]:
     likely = quantity.range
     if likely is None:
         return
     for bound, estimate, end, outwards in (
-        (promise.lower, likely.low, promise.quantiles[0].low, -inf),
-        (promise.upper, likely.high, promise.quantiles[1].high, inf),
+        (tolerance_bound.lower, likely.low, tolerance_bound.quantiles[0].low, -inf),
+        (tolerance_bound.upper, likely.high, tolerance_bound.quantiles[1].high, inf),
     ):
         reached = bound if isfinite(bound) else end
         if not (isfinite(reached) and isfinite(estimate.value)):
             continue
         scale = abs(estimate.value)
-        if not promise.is_life:
+        if not tolerance_bound.is_life:
             scale = abs(likely.high.value - likely.low.value)
         away = abs(estimate.value - reached)
         # Farther away, the quantile is at a jump of the values, which more rows hardly help.
         if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
-            text = promise.unit.text(reached, outwards)
-            best = promise.unit.text(estimate.value)
+            text = tolerance_bound.unit.text(reached, outwards)
+            best = tolerance_bound.unit.text(estimate.value)
             clause = f"the conservative bound, {text}, is far from the estimate, {best}"
             yield clause, (away / (BOUND * scale)) ** 2
 

@@ -103,9 +103,9 @@ def tightened(
     inputs : sequence of str
         All of them at once.
     """
-    promised_numbers = list(_promised(quantity))
+    bounded_quantiles = list(_bounded_quantiles(quantity))
     laws = halvings(result, inputs)
-    if not promised_numbers or not laws:
+    if not bounded_quantiles or not laws:
         return
     unanswered = TighterTolerance(tuple(inputs), "", law=halvings_in_words(result, laws))
     changes = {
@@ -114,13 +114,13 @@ def tightened(
         for key, value in arguments.items()
     }
     try:
-        keys = [key for key, *_ in promised_numbers]
+        keys = [key for key, *_ in bounded_quantiles]
         answer = reweighted_summary(result, changes, _asked(result, quantity, keys), _PARTS)
     except (InputError, RunError) as refusal:
         yield replace(unanswered, reason=f"{_UNKNOWN} ({refusal})")
         return
     described = answer.summary.outputs.get(quantity.name)
-    for key, words, before, unit, more in promised_numbers:
+    for key, words, before, unit, more in bounded_quantiles:
         statistic = described.find(*key) if described is not None else None
         if statistic is None:
             yield replace(unanswered, statistic=words, reason=_UNKNOWN)
@@ -140,7 +140,7 @@ def tightened(
             effective_rows=answer.effective_rows,
             key=key_of("outputs", quantity.name, *key, verb="what-if", options=given),
             wants_more=more,
-            promise=_bounding(quantity, key),
+            tolerance_bound=_bounding(quantity, key),
             failed=statistic.best.failed,
         )
 
@@ -154,12 +154,12 @@ def _asked(result: Result, quantity: Quantity, keys: Sequence[Sequence[str]]) ->
 
 
 def _bounding(quantity: Quantity, key: Sequence[str]) -> ToleranceBound | None:
-    if quantity.promise is None or key[0] != "quantiles":
+    if quantity.tolerance_bound is None or key[0] != "quantiles":
         return None
-    return quantity.promise.of_quantile(float(key[1]))
+    return quantity.tolerance_bound.of_quantile(float(key[1]))
 
 
-def _promised(
+def _bounded_quantiles(
     quantity: Quantity,
 ) -> Iterator[tuple[tuple[str, ...], str, Estimate, DisplayUnit, bool | None]]:
     """Yield the numbers that matter: key, words, number, unit, and whether more is better.
@@ -173,18 +173,20 @@ def _promised(
         key = ("thresholds", split_name(event.name)[2], side)
         words = f"the share of rows that {event.predicate}"
         yield key, words, event.share, DisplayUnit(), quantity.wants_more
-    promise = quantity.promise
-    if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
+    tolerance_bound = quantity.tolerance_bound
+    if (
+        tolerance_bound is None or tolerance_bound.of_magnitude
+    ):  # the quantiles of the rows have a sign
         return
     wants_more = quantity.wants_more
     if quantity.events and wants_more is None:  # which quantile matters is not known
         return
     if quantity.is_life and wants_more is not None:
         wants_more = not wants_more  # more ends are shorter lives
-    for p, before in zip(promise.probabilities, promise.quantiles, strict=True):
+    for p, before in zip(tolerance_bound.probabilities, tolerance_bound.quantiles, strict=True):
         if isfinite(before.value):
             words = f"the {100 * p:g} % quantile"
-            yield ("quantiles", repr(p)), words, before, promise.unit, wants_more
+            yield ("quantiles", repr(p)), words, before, tolerance_bound.unit, wants_more
 
 
 MOST = 4

@@ -1,4 +1,4 @@
-"""Tolerance bound that can be promised of an output, and its likely range."""
+"""Tolerance bound of an output, and its likely range."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -68,7 +68,7 @@ def piles(
 
 @dataclass(frozen=True)
 class ToleranceBound:
-    """A tolerance bound that can be promised, or conservative quantiles.
+    """A tolerance bound of an output, or conservative quantiles in its place.
 
     Attributes
     ----------
@@ -131,17 +131,17 @@ class ToleranceBound:
 
     @property
     def sentence(self) -> str:
-        """The promise, and the values at which rows pile up; "" if there is none."""
+        """The bound in words, and the values at which rows pile up; "" if there is none."""
         piles = (
             f"{percent(share)} of the rows have the {_LAST[side]} value, {self.unit.text(value)}:"
             " values may be truncated there."
             for side, (value, share) in self.piled.items()
         )
-        return " ".join(filter(None, (self._promised, *piles)))
+        return " ".join(filter(None, (self._bound_sentence, *piles)))
 
     @property
     def fact(self) -> Fact:
-        """The promise with its numbers."""
+        """The bound with its numbers."""
         low, high = self.quantiles
         numbers = {
             "coverage": self.coverage,
@@ -175,7 +175,7 @@ class ToleranceBound:
         return round(1 - self.coverage, 12), self.coverage
 
     @property
-    def _promised(self) -> str:
+    def _bound_sentence(self) -> str:
         share = f"{100 * self.coverage:g} %"
         covered = f"{share}{self._of_values()}"
         bounds = [

@@ -33,8 +33,8 @@ class TighterTolerance:
         Whether a larger number is better; None if unknown.
     law : str
         The halved scatter: ``sd 0.5 mm instead of 1``.
-    promise : ToleranceBound or None
-        The current promise of the same quantile; None if an end of the interval of `after` cannot
+    tolerance_bound : ToleranceBound or None
+        The current bound of the same quantile; None if an end of the interval of `after` cannot
         replace it.
     failed : Estimate or None
         The ends of that interval with failed rows at worst, where rows failed.
@@ -51,7 +51,7 @@ class TighterTolerance:
     key: str = ""
     wants_more: bool | None = None
     law: str = ""
-    promise: ToleranceBound | None = None
+    tolerance_bound: ToleranceBound | None = None
     failed: Estimate | None = None
 
     @property
@@ -64,7 +64,7 @@ class TighterTolerance:
                 "what": self.statistic,
                 "before": estimate_json.numbers(self.before),
                 "after": estimate_json.numbers(self.after),
-                "promised": self.promised,
+                "promised": self.bound_sentence,
                 "key": self.key,
             },
             (what_if,),
@@ -140,12 +140,12 @@ class TighterTolerance:
         return f"Halving the scatter of {words}{law} would {changed}."
 
     @property
-    def promised(self) -> str:
-        """The new promise, an end of the interval with failed rows beyond it; "" without one."""
-        if self.promise is None:
+    def bound_sentence(self) -> str:
+        """The new bound, an end of the interval with failed rows beyond it; "" without one."""
+        if self.tolerance_bound is None:
             return ""
-        before = self.promise.failed[isfinite(self.promise.upper)] or self.before
-        return self.promise.would_be(self.failed or self.after, before)
+        before = self.tolerance_bound.failed[isfinite(self.tolerance_bound.upper)] or self.before
+        return self.tolerance_bound.would_be(self.failed or self.after, before)
 
     @property
     def besides(self) -> str:

@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from uq.assess.population import as_sample
 from uq.assess.sample import SelectedRows, share
 from uq.assess.statistic import COUNT, FACT, Context, Reader, Statistic, StatisticKind, placed
+from uq.assess.weighted_mixture import as_sample
 from uq.contract import Mask
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.result.variables import error_name
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import effective_rows
-from uq.stats.intervals import Replicates
 from uq.text.numbers import counted, percent
 
 NEVER_ENDING = "never_ending"
@@ -50,9 +50,9 @@ def _never(element: Element) -> SelectedRows | None:
     return SelectedRows(~element.failed, element.never.astype(float))
 
 
-def never_ending(element: Element, replicate: Replicates) -> Estimate:
+def never_ending(element: Element, dependence: Dependence) -> Estimate:
     """Estimate the probability that a life never ends; unknown where censored rows may not end."""
-    return as_sample(element, replicate).never_ending()
+    return as_sample(element, dependence).never_ending()
 
 
 def effective(element: Element, context: Context) -> Iterator[Statistic]:

@@ -13,9 +13,9 @@ from uq.assess.statistic import FACT, Context, Reader, Statistic, StatisticKind,
 from uq.assess.targets import number_of
 from uq.contract import Floats
 from uq.result.element import Element
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import NOTHING, Estimate
-from uq.stats.intervals import CONFIDENCE, UNKNOWN, Replicates, scatter_interval, upper_probability
+from uq.stats.intervals import CONFIDENCE, UNKNOWN, scatter_interval, upper_probability
 from uq.stats.moments import Moments
 from uq.stats.quantile_functions import normal
 from uq.stats.tails import heavier_tail, lacks_variance
@@ -73,7 +73,7 @@ def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
     if "regime" not in context.rows.output_names or target.refused or element.weights is not None:
         return
     codes = context.rows.dataset["regime"].values
-    split = between_share(target.values, codes, context.replicate)
+    split = between_share(target.values, codes, context.rows.dependence)
     if isfinite(split.value):
         label = "variance between regimes"
         yield Statistic(
@@ -82,7 +82,7 @@ def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
 
 
 def between_share(
-    values: Floats, codes: NDArray[np.integer], replicate: Replicates = None
+    values: Floats, codes: NDArray[np.integer], dependence: Dependence = INDEPENDENT
 ) -> Estimate:
     """Estimate the share of the variance that the regime's mean explains.
 
@@ -92,7 +92,7 @@ def between_share(
         NaN where there is none.
     codes : ndarray of int, shape (n,)
         Regime of each row, negative for none.
-    replicate : ndarray of int, shape (n,), optional
+    dependence : Dependence, optional
 
     Returns
     -------
@@ -117,13 +117,14 @@ def between_share(
     value, deviation, residual = _split(y, regime)
     if not np.isfinite(value) or lacks_variance(y):
         return NOTHING
-    if replicate is None:
+    if dependence.labels is None:
         value, low, high = _independent(value, deviation, residual, regime.max() + 1)
-    elif isinstance(replicate, Clusters):  # that of few rows scatters otherwise
+    elif dependence.samples is not None:  # that of few rows scatters otherwise
         low, high = UNKNOWN
     else:
-        of = replicate[kept]
-        shares = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
+        replicate = dependence.labels[kept]
+        rows = (replicate == number for number in np.unique(replicate))
+        shares = np.array([_split(y[inside], regime[inside])[0] for inside in rows])
         low, high = scatter_interval(value, shares) if np.isfinite(shares).all() else UNKNOWN
     return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))
 

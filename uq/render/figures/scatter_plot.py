@@ -104,7 +104,7 @@ def scatter(result: AnyResult, output: str, *, axes: Axes | None = None) -> Figu
             logarithmic(panel)
         _points(panel, x, shown)
         for words, (mask, colour) in parts.items():
-            _conditional(panel, x, shown, mask, colour, words, medians, rows.replicates is None)
+            _conditional(panel, x, shown, mask, colour, words, medians, rows.dependence.is_none)
         if not across:
             roomy(panel, 6 if alone else 4)
         whole_numbers(panel.yaxis)

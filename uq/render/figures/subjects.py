@@ -11,7 +11,7 @@ from uq.assess.row_inputs import independent_inputs
 from uq.assess.sampled_laws import laws_and_values
 from uq.assess.sensitivities import TargetIndices, methods
 from uq.assess.summary import REGIME
-from uq.assess.targets import lightened, number_of, split_name
+from uq.assess.targets import number_of, split_name, transformed_if_heavy
 from uq.errors import InputError
 from uq.indices.methods import METHODS
 from uq.render.figures.catalogue import FigureSubject
@@ -77,7 +77,7 @@ def indices_of_the_first(findings: Findings, names: Sequence[str]) -> Iterator[F
         if method is None:
             continue
         target = number_of(findings.result.named_elements(output)[0])
-        name = (target if METHODS[method].scale_free else lightened(target)).name
+        name = (target if METHODS[method].scale_free else transformed_if_heavy(target)).name
         try:
             target_indices = findings.indices(method, name)
         except InputError:

@@ -113,7 +113,7 @@ def _place(quantity: Quantity) -> tuple[str, str]:
 
 def _basis(quantity: Quantity) -> Markup:
     """Return the kind of tolerance bound, or the reason why there is none."""
-    return shown("" if quantity.promise is None else quantity.promise.basis)
+    return shown("" if quantity.tolerance_bound is None else quantity.tolerance_bound.basis)
 
 
 def _event(answer: Answer, *place: str) -> Markup:
@@ -206,16 +206,16 @@ def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
             yield _line(_event(answer, *place, "events", event.name))
     if answer.regimes_first:
         return
-    promised = [
+    bounded = [
         quantity
         for quantity in answer.quantities[1:]
         if quantity.output == lead.output
-        and quantity.promise is not None
-        and quantity.promise.sentence
+        and quantity.tolerance_bound is not None
+        and quantity.tolerance_bound.sentence
     ]
-    for other in promised if len(promised) <= _MOST_ELEMENTS else promised[-1:]:
-        promise = keyed(facts, *_place(other), "promise")
-        yield _small(Markup("{}: {}").format(shown(other.place), promise))
+    for other in bounded if len(bounded) <= _MOST_ELEMENTS else bounded[-1:]:
+        tolerance_bound = keyed(facts, *_place(other), "promise")
+        yield _small(Markup("{}: {}").format(shown(other.place), tolerance_bound))
 
 
 def _ranking(answer: Answer) -> Markup:
@@ -289,7 +289,7 @@ def _advice(answer: Answer, key: str, advice: Advice) -> Markup:
     if not advice.key:
         has_number = advice.rows is not None
         return keyed(answer.fact, "advice", key) if has_number else shown(advice.sentence)
-    sure = [] if advice.sure is None else [with_keys(advice.sure.promised, advice.sure.key)]
+    sure = [] if advice.sure is None else [with_keys(advice.sure.bound_sentence, advice.sure.key)]
     worse = (with_keys(harm.besides, harm.key) for harm in advice.harmed)
     also = with_keys(advice.also, *(tolerance.key for tolerance in advice.alike))
     return joined(with_keys(advice.sentence, advice.key), *sure, *worse, also)

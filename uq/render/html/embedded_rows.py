@@ -25,7 +25,6 @@ from uq.render.html.tolerances import event_key, tolerances
 from uq.result.element import Element
 from uq.result.elements import flags
 from uq.result.result import Result
-from uq.stats.clusters import Clusters
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain
 from uq.text.numbers import grouped, printed, threshold
@@ -119,7 +118,9 @@ def rows_inside(
     elements = list(elements_with_laws(rows, outputs))
     columns = [input_column(rows, name, findings.result.input_unit(name)) for name in inputs]
     columns += [output_column(rows, element, analysis) for element in elements]
-    promises = {lead.name: lead.promise for lead in answered[:1] if lead.promise is not None}
+    tolerance_bounds = {
+        lead.name: lead.tolerance_bound for lead in answered[:1] if lead.tolerance_bound is not None
+    }
     drawn = first_element(elements, answered, analysis)
     first = list(inputs).index(first_input(independent_inputs(rows), elements[drawn], answered))
     return {
@@ -134,7 +135,7 @@ def rows_inside(
         "events": [*_thresholds(rows, elements, analysis), *_regimes(rows)],
         "colours": {"rows": ROWS, "limit": LIMIT},
         "first": [first, len(inputs) + drawn],
-        "tolerances": tolerances(rows, elements, promises),
+        "tolerances": tolerances(rows, elements, tolerance_bounds),
         "note": _note(elements),
         "quarters_note": QUARTERS,
     }
@@ -194,8 +195,8 @@ def part_of(rows: Result, columns: int) -> Result:
     most = min(MOST_ROWS, MOST_NUMBERS // columns)
     if count <= most:
         return rows
-    part = rows.replicates
-    sample = np.asarray(part) if isinstance(part, Clusters) else np.arange(count)
+    labels = rows.dependence.labels
+    sample = np.arange(count) if labels is None or rows.dependence.samples is None else labels
     names, size = np.unique(sample, return_counts=True)
     order = np.random.default_rng(int(rows.dataset.attrs["seed"])).permutation(len(names))
     chosen = names[order[np.cumsum(size[order]) <= most]]

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from uq.assess.answer.answer_sentences import Answer
-from uq.assess.card import Card, Cause
+from uq.assess.card import Card, LeadingInput
 from uq.assess.card_numbers import Headline
 from uq.render.card import cause_columns, interval_of, label_of, number_of
 from uq.render.html.cells import SHARE, Cell, HtmlTable
@@ -108,7 +108,7 @@ def _place(answer: Answer) -> tuple[str, ...]:
 
 
 def _cells(
-    cause: Cause, texts: list[str], place: tuple[str, ...], has_effects: bool
+    cause: LeadingInput, texts: list[str], place: tuple[str, ...], has_effects: bool
 ) -> Iterator[Cell]:
     """Yield the cells of a cause: inputs, share as a bar, effect, number with less scatter."""
     contribution, first = cause.contribution, cause.contribution.indices[0]

@@ -24,7 +24,6 @@ from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.law import Law
 from uq.sampling.listed_values import IntegerRange
-from uq.stats.clusters import Clusters
 from uq.stats.estimate import Estimate
 from uq.study.file import AnalysisTable
 from uq.text.literals import plain, toml
@@ -41,7 +40,7 @@ Statistics = Mapping[tuple[str, ...], Statistic]
 
 
 def tolerances(
-    rows: Result, elements: Sequence[Element], promises: Mapping[str, ToleranceBound]
+    rows: Result, elements: Sequence[Element], tolerance_bounds: Mapping[str, ToleranceBound]
 ) -> dict[str, Any] | None:
     """Return the sliders of inputs, with weights and estimates at each stop.
 
@@ -51,7 +50,7 @@ def tolerances(
         Rows embedded in the page.
     elements : sequence of Element
         Of these rows.
-    promises : dict of str to ToleranceBound
+    tolerance_bounds : dict of str to ToleranceBound
         Tolerance bounds of elements.
 
     Returns
@@ -63,9 +62,9 @@ def tolerances(
         return None
     inputs = inputs_of(rows)
     without = {name: why for name in inputs.laws if (why := _why_without(name, inputs))}
-    context = Context(rows, _analysis(rows, elements, promises))
+    context = Context(rows, _analysis(rows, elements, tolerance_bounds))
     outputs = rows.shown_outputs(context.analysis)
-    studied = _statistics(elements_with_laws(rows, outputs), context, promises)
+    studied = _statistics(elements_with_laws(rows, outputs), context, tolerance_bounds)
     count, parts_name = _independent(rows)
 
     def estimates(law_name: str, arguments: Arguments) -> dict[str, Any] | None:
@@ -75,7 +74,7 @@ def tolerances(
         stop = {"options": " ".join(options)}
         try:
             weighting = weighting_of(rows, changes, inputs)
-            then = _statistics(weighting.elements(outputs), context, promises)
+            then = _statistics(weighting.elements(outputs), context, tolerance_bounds)
             weighting.refuse_if_unused()
         except RunError as refusal:
             return stop | {"quality": plain(printed(f"{capitalized(str(refusal))}."))}
@@ -83,7 +82,10 @@ def tolerances(
             return None
         weights = weighting.all_inputs
         embedded = {} if weights.refusal else {"weights": log_bytes(weights.weights)}
-        bounds = {name: _promised_then(then, studied, name, promises[name]) for name in promises}
+        bounds = {
+            name: _bounds_then(then, studied, name, tolerance_bounds[name])
+            for name in tolerance_bounds
+        }
         refused = {name: weights.refusal for name, weights in weighting.refused.items()}
         return (
             stop
@@ -106,7 +108,7 @@ def tolerances(
         "studied": {
             "quality": "The laws of the study.",
             "events": _events(studied, elements, context),
-            "promised": {name: _promised_now(bound) for name, bound in promises.items()},
+            "promised": {name: _bounds_now(bound) for name, bound in tolerance_bounds.items()},
         },
         "fewest": FEWEST,
         "parts": count,
@@ -132,29 +134,31 @@ def _why_without(name: str, inputs: Inputs) -> str:
 
 
 def _analysis(
-    rows: Result, elements: Sequence[Element], promises: Mapping[str, ToleranceBound]
+    rows: Result, elements: Sequence[Element], tolerance_bounds: Mapping[str, ToleranceBound]
 ) -> AnalysisTable:
     """Return the thresholds of the study, and the quantiles behind the tolerance bounds."""
     analysis = rows.analysis
     shown = {
         element.output: None
         for element in elements
-        if element.output in analysis.thresholds or element.name in promises
+        if element.output in analysis.thresholds or element.name in tolerance_bounds
     }
-    bounds = promises.values()
+    bounds = tolerance_bounds.values()
     quantiles = {p: None for bound in bounds for p in bound.probabilities if bound.of_quantile(p)}
     changed = {"quantiles": tuple(quantiles), "outputs": tuple(shown)}
     return analysis.model_copy(update=changed)
 
 
 def _statistics(
-    elements: Iterable[Element], context: Context, promises: Mapping[str, ToleranceBound]
+    elements: Iterable[Element], context: Context, tolerance_bounds: Mapping[str, ToleranceBound]
 ) -> Statistics:
     """Return the probabilities of events, and the quantiles behind the tolerance bounds."""
     return {
         (element.name, *statistic.key): statistic
         for element in elements
-        for makers in [(thresholds, quantiles) if element.name in promises else (thresholds,)]
+        for makers in [
+            (thresholds, quantiles) if element.name in tolerance_bounds else (thresholds,)
+        ]
         for make in makers
         for statistic in make(element, context)
     }
@@ -206,9 +210,9 @@ def _quality(effective_rows: float, pareto_k: float, count: int, name: str) -> s
 
 def _independent(rows: Result) -> tuple[int, str]:
     """Return the number of independent samples, or of rows if each sample is one row."""
-    part = rows.replicates
-    if isinstance(part, Clusters) and part.are_samples:
-        return len(np.unique(part)), "samples"
+    labels = rows.dependence.labels
+    if labels is not None and rows.dependence.are_samples:
+        return len(np.unique(labels)), "samples"
     return len(rows), "rows"
 
 
@@ -274,14 +278,14 @@ def _cell(statistic: Statistic | None, refused: str) -> dict[str, Any]:
     }
 
 
-def _promised_now(promise: ToleranceBound) -> list[str]:
+def _bounds_now(tolerance_bound: ToleranceBound) -> list[str]:
     """Return the tolerance bounds that a quantile of weighted rows could replace."""
-    bounds = map(promise.of_quantile, promise.probabilities)
+    bounds = map(tolerance_bound.of_quantile, tolerance_bound.probabilities)
     return [plain(printed(bound.sentence)) for bound in bounds if bound is not None]
 
 
-def _promised_then(
-    then: Statistics, studied: Statistics, name: str, promise: ToleranceBound
+def _bounds_then(
+    then: Statistics, studied: Statistics, name: str, tolerance_bound: ToleranceBound
 ) -> list[str]:
     """Return the changed bounds of an element, beside the same estimates for the study's law."""
     return [
@@ -289,8 +293,8 @@ def _promised_then(
             bound,
             *(_end(side.get((name, "quantiles", repr(p))), bound) for side in (then, studied)),
         )
-        for p in promise.probabilities
-        if (bound := promise.of_quantile(p)) is not None
+        for p in tolerance_bound.probabilities
+        if (bound := tolerance_bound.of_quantile(p)) is not None
     ]
 
 

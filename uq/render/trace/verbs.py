@@ -22,7 +22,7 @@ from uq.assess.convergence import (
 from uq.assess.design_sample import sample_of
 from uq.assess.fact import Fact
 from uq.assess.findings import Findings
-from uq.assess.fleet import fleet_facts, fleet_of, the_life
+from uq.assess.fleet import fleet_facts, fleet_of, lifetime_element
 from uq.assess.regimes import BOUNDARY, boundary, boundary_facts
 from uq.assess.sampled_laws import inputs_facts
 from uq.assess.sensitivities import sensitivities
@@ -120,7 +120,7 @@ def _fleet(result: Result, options: Options, path: Path) -> Fact:
         ) from None
     output, by = options.get("output"), list[float]()
     if "by" in options:
-        units = the_life(result.independent, output).declared.unit
+        units = lifetime_element(result.independent, output).declared.unit
         by = [read_threshold("by", options["by"], "a life", units)]
     return fleet_facts(fleet_of(result, size, by, allow, output))
 

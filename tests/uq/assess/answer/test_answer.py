@@ -31,16 +31,16 @@ def lifetime():
 
 def test_the_promise_of_a_life_is_its_lower_tolerance_bound_rounded_down(lifetime):
     ds, conclusions = lifetime
-    assert conclusions.lead.promise.basis == (
+    assert conclusions.lead.tolerance_bound.basis == (
         "Tolerance bound from order statistics (rank 39 of 1 000), valid for any distribution."
     )
     (days,) = numbers(
         "With 95 % confidence, at least 95 % last longer than # days.",
-        conclusions.lead.promise.sentence,
+        conclusions.lead.tolerance_bound.sentence,
     )
     asked = {"coverage": 0.95, "confidence": 0.95}
     bound = summarised(asking(ds, tolerance=asked))["outputs"]["life"]["tolerance"]["lower"]
-    assert conclusions.lead.promise.lower == bound
+    assert conclusions.lead.tolerance_bound.lower == bound
     assert bound * 0.99 < days * DAY <= bound
 
 
@@ -85,9 +85,10 @@ def test_an_angle_is_promised_by_its_magnitude_in_degrees():
     ds["turn"].attrs["units"] = "rad"
     lead = answer(asking(ds, outputs=["turn"], thresholds={"turn": 0.4})).lead
     (bound,) = numbers(
-        "With 95 % confidence, at least 95 % of magnitudes are below #°.", lead.promise.sentence
+        "With 95 % confidence, at least 95 % of magnitudes are below #°.",
+        lead.tolerance_bound.sentence,
     )
-    assert np.degrees(lead.promise.upper) == pytest.approx(bound, rel=5e-3) and bound > 27
+    assert np.degrees(lead.tolerance_bound.upper) == pytest.approx(bound, rel=5e-3) and bound > 27
     share, _, _, at = numbers(
         r"# % \(# to # %\) exceed # rad in magnitude\.", lead.events[0].sentence
     )
@@ -101,14 +102,14 @@ def test_rows_that_are_not_independent_give_a_cautious_quantile_and_the_reason()
     low, cautious, high, bold = numbers(
         r"95 % of values are above # \(conservative bound: #\); 95 % of values are below #"
         r" \(conservative bound: #\)\.",
-        lead.promise.sentence,
+        lead.tolerance_bound.sentence,
     )
     quantiles = summarised(ds)["outputs"]["y"]["quantiles"]
     shown = [quantiles["0.05"]["value"], quantiles["0.05"]["low"]]
     shown += [quantiles["0.95"]["value"], quantiles["0.95"]["high"]]
     assert [low, cautious, high, bold] == pytest.approx(shown, rel=1e-2)
     assert cautious <= shown[1] and bold >= shown[3]
-    assert lead.promise.basis.startswith(
+    assert lead.tolerance_bound.basis.startswith(
         "No tolerance bound: the rows of a 'saltelli' design are not independent."
     )
     first = lead.ranking.contributions[0]
@@ -135,9 +136,9 @@ def test_regimes_are_named_with_their_shares():
 def test_few_rows_promise_nothing(rows):
     conclusions = answer(linear(samples=rows))
     assert "confidence" not in repr(conclusions)
-    assert conclusions.lead.promise.sentence == ""
+    assert conclusions.lead.tolerance_bound.sentence == ""
     assert re.fullmatch(
-        r"No tolerance bound: \d+ rows are required\.", conclusions.lead.promise.basis
+        r"No tolerance bound: \d+ rows are required\.", conclusions.lead.tolerance_bound.basis
     )
     assert conclusions.lead.ranking.leader is None
 

@@ -161,7 +161,7 @@ def test_the_side_that_is_wanted_is_promised_and_advised(wanted, side):
     asked = {"outputs": ["y"], "thresholds": {"y": 5.0}, "wanted": {"y": wanted}}
     conclusions = answer(asking(linear(samples=400), **asked))
     bound = rf"With 95 % confidence, at least 95 % of values {side} [\d.]+\."
-    assert re.fullmatch(bound, conclusions.lead.promise.sentence)
+    assert re.fullmatch(bound, conclusions.lead.tolerance_bound.sentence)
     (remedy,) = (each for each in conclusions.advice if each.rule in ("tighten", "keep"))
     if remedy.rule == "tighten":
         before, after = remedy.tightened.before.value, remedy.tightened.after.value
@@ -184,7 +184,7 @@ def test_a_large_angle_may_be_wanted():
     assert answer(kinds(samples=100, analysis=asked)).lead.wants_more is False
     lead = answer(kinds(samples=100, analysis=asked | {"wanted": {"angle": "above"}})).lead
     assert lead.wants_more
-    assert "at least 95 % of defined magnitudes are above" in lead.promise.sentence
+    assert "at least 95 % of defined magnitudes are above" in lead.tolerance_bound.sentence
 
 
 def test_more_successes_and_fewer_other_ends_are_better():

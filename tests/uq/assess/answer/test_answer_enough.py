@@ -27,7 +27,7 @@ def test_enough_rows_say_so_with_what_another_seed_would_find():
         r" days \(95 %\); rate would again contribute most\.",
         conclusions.enough.sentence,
     )
-    assert low < conclusions.lead.promise.quantiles[0].value / 86400 < high
+    assert low < conclusions.lead.tolerance_bound.quantiles[0].value / 86400 < high
     assert verdict(Findings(Result(ds))) == [
         "Sample size is sufficient for all results of the study."
     ]

@@ -22,7 +22,7 @@ def test_numbers_of_a_short_answer_are_reached_without_reading_a_sentence():
     facts = conclusions.fact
     asked = tuple(facts.at("asked").content)
     assert asked == ("quantities", "life")
-    assert facts.at(*asked, "promise", "lower").content == conclusions.lead.promise.lower
+    assert facts.at(*asked, "promise", "lower").content == conclusions.lead.tolerance_bound.lower
     assert facts.at(*asked, "promise", "unit").content == "days"
     b10 = facts.at(*asked, "b_lives", "B10", "value").content
     assert b10 == uq.summary(ds).loc["life", "B10"]
@@ -45,7 +45,7 @@ def test_each_number_has_the_functions_that_computed_it():
     assert functions(facts, "rows") == ["status_counts"]
     assert functions(facts, *life, "earliest", "lives") == ["lowest_rows"]
     assert functions(facts, *life, "earliest", "inputs") == ["inputs_apart"]
-    assert functions(facts, *life, "promise", "lower_quantile") == ["quantile", "Population"]
+    assert functions(facts, *life, "promise", "lower_quantile") == ["quantile", "WeightedMixture"]
 
 
 def test_a_probability_that_censored_rows_leave_open_names_the_estimator_of_the_answer():

@@ -41,14 +41,14 @@ def nested():
 
 def test_units_promise_a_quantile_with_the_reason(nested):
     _, conclusions, statistics = nested
-    promise = conclusions.lead.promise
+    tolerance_bound = conclusions.lead.tolerance_bound
     days, cautious = numbers(
-        r"95 % last longer than # days \(conservative bound: # days\)\.", promise.sentence
+        r"95 % last longer than # days \(conservative bound: # days\)\.", tolerance_bound.sentence
     )
     quantile = statistics["quantiles"]["0.05"]
     assert days * DAY == pytest.approx(quantile["value"], rel=5e-3)
     assert quantile["low"] * 0.99 < cautious * DAY <= quantile["low"]
-    assert promise.basis == (
+    assert tolerance_bound.basis == (
         "No tolerance bound: the rows of one sample are not independent."
         " The conservative bound is the end of the 95 % interval of the quantile."
     )
@@ -110,7 +110,7 @@ def test_half_the_scatter_is_what_the_weighted_rows_say(nested):
 def test_rows_of_samples_in_replicates_are_weighted():
     ds = wear(method="sobol", samples=16, replicates=8, repeats=3)
     conclusions = answer(ds)
-    assert conclusions.lead.promise.basis == (
+    assert conclusions.lead.tolerance_bound.basis == (
         "No tolerance bound: the rows of one sample are not independent."
         " The conservative bound is the end of the 95 % interval of the quantile."
     )
@@ -129,7 +129,7 @@ def test_a_random_model_is_answered_as_any_other():
     )
     shown = [statistics["quantiles"][p]["value"] for p in ("0.05", "0.95", "0.5")]
     assert [low, high, median] == pytest.approx(shown, rel=5e-3)
-    assert "With 95 % confidence" in conclusions.lead.promise.sentence
+    assert "With 95 % confidence" in conclusions.lead.tolerance_bound.sentence
 
 
 def test_a_bound_that_contradicts_the_quantile_is_no_promise():
@@ -145,17 +145,17 @@ def test_a_bound_that_contradicts_the_quantile_is_no_promise():
         "analysis": {"tolerance": {"coverage": 0.95, "confidence": 0.95}},
     }
     ds = computed(study_of(tables))
-    promise, statistics = answer(ds).lead.promise, summarised(ds)["outputs"]["life"]
+    tolerance_bound, statistics = answer(ds).lead.tolerance_bound, summarised(ds)["outputs"]["life"]
     assert statistics["tolerance"]["lower"] > statistics["quantiles"]["0.05"]["value"]
     (days,) = numbers(
         "No tolerance bound: the value from order statistics, # days, contradicts the quantile"
         " estimate."
         " The conservative bound is the end of the 95 % interval of the quantile.",
-        promise.basis,
+        tolerance_bound.basis,
     )
     assert days * DAY == pytest.approx(statistics["tolerance"]["lower"], rel=5e-3)
     shown = numbers(
-        r"95 % last longer than # days \(conservative bound: # days\)\.", promise.sentence
+        r"95 % last longer than # days \(conservative bound: # days\)\.", tolerance_bound.sentence
     )
     ends = [statistics["quantiles"]["0.05"][key] / DAY for key in ("value", "low")]
     assert shown == pytest.approx(ends, rel=1e-2) and shown[1] <= ends[1]

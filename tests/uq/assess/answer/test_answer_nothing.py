@@ -76,7 +76,7 @@ def test_where_all_rows_fail_nothing_else_is_advised():
 
 def test_an_event_beyond_the_horizon_is_not_settled_by_rows():
     conclusions = answer(all_censored())
-    assert conclusions.lead.promise.sentence.endswith("last longer than 5 days.")
+    assert conclusions.lead.tolerance_bound.sentence.endswith("last longer than 5 days.")
     (advice,) = conclusions.advice
     assert advice.text == (
         "More rows would not help: the share that fail within 10 days cannot be estimated: it is"

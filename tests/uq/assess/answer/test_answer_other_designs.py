@@ -53,7 +53,7 @@ def test_screening_ranks_in_the_unit_of_the_output_and_says_what_it_cannot_promi
     ds = with_output(ds, "depth", 0.003 * ds["x4"].values ** 2 * (1 + ds["x1"].values))
     ds = asking(ds, outputs=["depth"])
     conclusions = answer(ds)
-    assert conclusions.lead.promise is None and conclusions.lead.range is None
+    assert conclusions.lead.tolerance_bound is None and conclusions.lead.range is None
     assert re.fullmatch(
         r"x4 contributes most: [\d.]+ µm \([\d.]+ to [\d.]+\)\.", conclusions.lead.ranking.sentence
     )
@@ -72,16 +72,16 @@ def piled(at):
 
 
 def test_no_bound_is_promised_that_no_row_can_exceed():
-    promise = answer(piled(0.7)).lead.promise
+    tolerance_bound = answer(piled(0.7)).lead.tolerance_bound
     share = 100 * (linear(samples=400)["x4"].values >= 0.7).mean()
     text = f"{share:.1f} % of the rows have the largest value, 0.7 m"
-    assert promise.sentence == f"{text}: values may be truncated there."
-    assert promise.basis == ""
+    assert tolerance_bound.sentence == f"{text}: values may be truncated there."
+    assert tolerance_bound.basis == ""
     traced = uq.trace(piled(0.7), "answer/quantities/depth/promise/share_at_largest")
     assert traced["value"] == pytest.approx(share / 100)
     assert [estimator["code"].rpartition(".")[2] for estimator in traced["estimators"]] == ["piles"]
     assert "do not exceed" not in repr(answer(piled(0.7)))
-    assert "at least 95 % of values are below" in answer(piled(1.0)).lead.promise.sentence
+    assert "at least 95 % of values are below" in answer(piled(1.0)).lead.tolerance_bound.sentence
 
 
 def test_inputs_that_may_have_no_effect_are_alternatives():

@@ -53,7 +53,7 @@ def test_the_quantile_and_the_input_that_contributes_most_are_said():
         r" rate would again contribute most\.",
         conclusions.lead.repeated.sentence,
     )
-    quantile, day = conclusions.lead.promise.quantiles[0], 86400.0
+    quantile, day = conclusions.lead.tolerance_bound.quantiles[0], 86400.0
     ends = [
         quantile.value * (end / quantile.value) ** 2**0.5 / day
         for end in (quantile.low, quantile.high)
@@ -91,8 +91,8 @@ def test_other_seeds_rank_first_one_of_the_inputs_that_are_named():
 def test_ends_that_look_alike_are_one_number_and_names_are_a_list():
     unit = DisplayUnit("rad s⁻¹")
     quantiles = Estimate(154.0, 153.9, 154.1), Estimate()
-    promise = ToleranceBound(0.95, 0.95, np.nan, np.nan, unit, quantiles)
-    assert repeated_quantile(promise, None, None).sentence == (
+    tolerance_bound = ToleranceBound(0.95, 0.95, np.nan, np.nan, unit, quantiles)
+    assert repeated_quantile(tolerance_bound, None, None).sentence == (
         "In a repeat with another seed, the 5 % quantile would again be 154 rad s⁻¹ (95 %)."
     )
     index = Estimate(0.5, 0.4, 0.6)
@@ -112,7 +112,7 @@ def test_a_low_quantile_at_a_jump_stays_within_the_likely_range():
         r"In a repeat with another seed, the 5 % quantile would be # to # mm? \(95 %\).*",
         lead.repeated.sentence.replace("\N{NO-BREAK SPACE}", " "),
     )
-    quantile = lead.promise.quantiles[0]
+    quantile = lead.tolerance_bound.quantiles[0]
     assert (
         quantile.value + 2**0.5 * (quantile.high - quantile.value)
         > 170

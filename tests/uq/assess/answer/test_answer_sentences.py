@@ -53,7 +53,9 @@ def test_lives_of_which_some_never_end():
     assert 1 + 9 * 9 / 149 <= low <= 1 + 9 * 10 / 149  # between the tenth life and the next
     mostly = answer(days(np.r_[ended[:50], np.full(150, np.inf)])).lead
     assert re.search(r"; 75\.0 % \(\S+ to \S+ %\) never fail\.$", mostly.range.sentence)
-    assert mostly.promise.sentence.startswith("With 95 % confidence, at least 95 % last longer")
+    assert mostly.tolerance_bound.sentence.startswith(
+        "With 95 % confidence, at least 95 % last longer"
+    )
 
 
 def test_lives_of_which_some_exceed_the_horizon():
@@ -76,7 +78,7 @@ def test_a_success_succeeds():
     ds["locking"].attrs["success"] = "the motors have locked"
     lead = answer(asking(ds, outputs=["locking"], thresholds={"locking": 5.0})).lead
     (latest,) = numbers(
-        r"With 95 % confidence, at least 95 % succeed within # s\.", lead.promise.sentence
+        r"With 95 % confidence, at least 95 % succeed within # s\.", lead.tolerance_bound.sentence
     )
     assert latest >= np.quantile(times, 0.95)
     share, *_, at = numbers(r"# % \(# to # %\) succeed within # s\.", lead.events[0].sentence)
@@ -96,7 +98,7 @@ def test_where_nothing_can_be_promised_a_probability_comes_first():
     ds["locking"].attrs["success"] = "the motors have locked"
     conclusions = answer(asking(ds, outputs=["locking"], thresholds={"locking": 20.0}))
     (event,) = conclusions.lead.events
-    assert conclusions.lead.promise.sentence == "" and conclusions.lead.first is event
+    assert conclusions.lead.tolerance_bound.sentence == "" and conclusions.lead.first is event
     assert conclusions.lead.head[:2] == [event.sentence, event.decided_by] == conclusions.lines[:2]
     share, least, edge, most, same = numbers(
         r"# % \(.*\) succeed within 20 s. Main driver: x4. Over x4, the share ranges from # %"
@@ -168,10 +170,13 @@ def test_nothing_is_advised_that_changes_no_digit():
 
 def test_samples_of_several_rows_bound_nothing_and_say_why():
     lead = answer(nested_result(samples=60)).lead
-    assert lead.promise.basis.startswith(
+    assert lead.tolerance_bound.basis.startswith(
         "No tolerance bound: the rows of one sample are not independent."
     )
-    assert np.isnan(lead.promise.lower) and "conservative bound" in lead.promise.sentence
+    assert (
+        np.isnan(lead.tolerance_bound.lower)
+        and "conservative bound" in lead.tolerance_bound.sentence
+    )
 
 
 def test_a_ranking_of_lives_says_that_it_integrates_nothing():

@@ -52,10 +52,10 @@ def test_tolerances_that_help_about_as_much_are_named_together():
     sure, studied = numbers(
         "The lower end of the 95 % interval of the 5 % quantile would be #, up from # by the"
         " same method.",
-        advice.sure.promised,
+        advice.sure.bound_sentence,
     )
     assert studied < now < sure <= low
-    assert advice.text == f"{advice.sentence} {advice.sure.promised} {advice.also}"
+    assert advice.text == f"{advice.sentence} {advice.sure.bound_sentence} {advice.also}"
 
 
 def test_each_tolerance_has_its_line_in_the_report():

@@ -66,10 +66,10 @@ def test_a_bound_that_many_rows_have_is_not_said_to_be_exceeded():
     """A tenth ends at the third cycle itself."""
     cycles = valued(lambda x, *_: 3.0 + np.floor(8 * x), "lifetime", thresholds={"found": 5.0})
     lead = answer(cycles).lead
-    assert lead.promise.sentence == "With 95 % confidence, at least 95 % last at least 3 s."
+    assert lead.tolerance_bound.sentence == "With 95 % confidence, at least 95 % last at least 3 s."
     assert lead.events[0].predicate == "fail before 5 s"  # those that end at 5 s are not among them
     gaps = valued(lambda x, *_: np.maximum(x - 0.97, 0) * -1.0)
-    assert answer(gaps).lead.promise.sentence == (
+    assert answer(gaps).lead.tolerance_bound.sentence == (
         "With 95 % confidence, at least 95 % of values are at least 0 m. 97.8 % of the rows have"
         " the"
         " largest value, 0 m: values may be truncated there."
@@ -79,7 +79,9 @@ def test_a_bound_that_many_rows_have_is_not_said_to_be_exceeded():
 
 def valued_promise(values, kind):
     return (
-        answer(valued(values, kind)).lead.promise.sentence.partition("95 % ")[2].split("95 % ")[-1]
+        answer(valued(values, kind))
+        .lead.tolerance_bound.sentence.partition("95 % ")[2]
+        .split("95 % ")[-1]
     )
 
 
@@ -87,7 +89,7 @@ def test_bounds_and_ranges_say_which_values_they_are_about():
     ds = valued(lambda x, *_: np.where(x < 0.2, np.nan, 1 + x))
     ds["found"].attrs["may_be_undefined"] = 1
     lead = answer(ds).lead
-    assert "at least 95 % of defined values are above" in lead.promise.sentence
+    assert "at least 95 % of defined values are above" in lead.tolerance_bound.sentence
     assert re.match(
         "90 % of defined values are between .* of the rows have no value", lead.range.sentence
     )
@@ -103,31 +105,35 @@ def test_what_the_rows_cannot_show_is_no_advice():
 
 
 def test_no_less_is_promised_than_now():
-    promise = ToleranceBound(0.95, 0.95, 13.9, np.nan, DisplayUnit("h"), is_life=True)
+    tolerance_bound = ToleranceBound(0.95, 0.95, 13.9, np.nan, DisplayUnit("h"), is_life=True)
     before = Estimate(19.0, 14.0, 21.0)
-    assert promise.would_be(Estimate(20.0, 13.95, 22.0), before) == ""
+    assert tolerance_bound.would_be(Estimate(20.0, 13.95, 22.0), before) == ""
     # The bound that heads the answer, 13.9 h, is of another estimator, and keeps its own name.
-    assert promise.would_be(Estimate(20.0, 14.2, 22.0), before) == (
+    assert tolerance_bound.would_be(Estimate(20.0, 14.2, 22.0), before) == (
         "The lower end of the 95 % interval of the 5 % quantile would be 14.2 h, up from 14 h by"
         " the same method."
     )
 
 
 def test_an_estimate_without_interval_is_not_promised():
-    sentence = answer(linear(samples=20)).lead.promise.sentence
+    sentence = answer(linear(samples=20)).lead.tolerance_bound.sentence
     assert re.fullmatch(
         r"About 95 % of values are above .*; about 95 % of values are below .*\.", sentence
     )
 
 
 def test_failed_rows_lie_beyond_what_could_then_be_promised():
-    promise = ToleranceBound(0.95, 0.95, 13.9, np.nan, DisplayUnit("h"), is_life=True)
+    tolerance_bound = ToleranceBound(0.95, 0.95, 13.9, np.nan, DisplayUnit("h"), is_life=True)
     before, after = Estimate(18.0, 14.5, 21.0), Estimate(20.0, 15.0, 22.0)
-    tolerance = TighterTolerance(("x1",), "the 5 % quantile", before, after, promise=promise)
-    assert "would be 15 h, up from 14.5 h" in tolerance.promised
-    assert tolerance.promised.endswith(" from 14.5 h by the same method.")
-    promise = replace(promise, failed=(Estimate(low=13.7, high=21.0), None))
-    worst = replace(tolerance, promise=promise, failed=Estimate(low=14.2, high=22.0))
-    assert "would be 14.2 h, up from 13.7 h" in worst.promised
-    assert worst.promised.endswith(" from 13.7 h by the same method.")
-    assert replace(worst, failed=Estimate(low=0.0, high=22.0)).promised == ""
+    tolerance = TighterTolerance(
+        ("x1",), "the 5 % quantile", before, after, tolerance_bound=tolerance_bound
+    )
+    assert "would be 15 h, up from 14.5 h" in tolerance.bound_sentence
+    assert tolerance.bound_sentence.endswith(" from 14.5 h by the same method.")
+    tolerance_bound = replace(tolerance_bound, failed=(Estimate(low=13.7, high=21.0), None))
+    worst = replace(
+        tolerance, tolerance_bound=tolerance_bound, failed=Estimate(low=14.2, high=22.0)
+    )
+    assert "would be 14.2 h, up from 13.7 h" in worst.bound_sentence
+    assert worst.bound_sentence.endswith(" from 13.7 h by the same method.")
+    assert replace(worst, failed=Estimate(low=0.0, high=22.0)).bound_sentence == ""

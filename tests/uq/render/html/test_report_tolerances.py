@@ -13,7 +13,7 @@ from scipy_counterparts import of_scipy
 import uq as api
 from uq.assess.answer.answer import conclude
 from uq.assess.findings import Findings
-from uq.assess.population import Population
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.assess.what_if import read_changes, reweighted_summary, what_if_facts
 from uq.contract import Status
 from uq.errors import RunError
@@ -224,9 +224,9 @@ def test_inputs_without_a_slider_are_named(shown):
 
 def test_a_stop_estimates_no_quantile_that_the_page_does_not_show(monkeypatch):
     findings = Findings(Result(scaled({}, samples=200)))
-    answered, searched, search = conclude(findings).quantities, [], Population.quantile
+    answered, searched, search = conclude(findings).quantities, [], WeightedMixture.quantile
     monkeypatch.setattr(
-        Population,
+        WeightedMixture,
         "quantile",
         lambda rows, p: searched.append(rows.element.name) or search(rows, p),
     )
@@ -236,19 +236,19 @@ def test_a_stop_estimates_no_quantile_that_the_page_does_not_show(monkeypatch):
     assert len(searched) <= stops + 1
 
 
-def promised(browser):
+def bound_sentence(browser):
     return browser.value("document.querySelector('.promised').innerText").replace("\xa0", " ")
 
 
 def test_the_page_says_what_could_then_be_promised(shown):
     ds = scaled({})
     browser = shown(ds)
-    now = api.answer(ds).lead.promise
-    assert promised(browser) == now.sentence
+    now = api.answer(ds).lead.tolerance_bound
+    assert bound_sentence(browser) == now.sentence
     move(browser, "z", "width", 2)
     _, reweighted = asked_of_python(browser, ds)
     low = what_if_facts(reweighted).json["outputs"]["life"]["quantiles"]["0.05"]["low"]
-    text = promised(browser)
+    text = bound_sentence(browser)
     assert text.startswith("The lower end of the 95 % interval of the 5 % quantile would be ")
     displayed = float(text.split("would be ")[1].split()[0])
     assert displayed <= low < displayed * 1.01
@@ -268,7 +268,7 @@ def test_failed_rows_lie_beyond_what_could_then_be_promised(shown, case):
     _, reweighted = asked_of_python(browser, ds)
     quantile = what_if_facts(reweighted).json["outputs"]["life"]["quantiles"]["0.05"]
     assert quantile["failed_low"] < quantile["low"]
-    displayed = float(promised(browser).split("would be ")[1].split()[0])
+    displayed = float(bound_sentence(browser).split("would be ")[1].split()[0])
     assert displayed <= quantile["failed_low"] < displayed * 1.01
 
 

@@ -116,8 +116,8 @@ def test_options_are_part_of_a_key():
 @pytest.mark.parametrize(
     ("make", "path", "estimator"),
     [
-        slow(every_kind, "outputs/angle/thresholds/0.5/above", "Population.probability_above"),
-        slow(every_kind, "outputs/angle/quantiles/0.5", "Population.quantile"),
+        slow(every_kind, "outputs/angle/thresholds/0.5/above", "WeightedMixture.probability_above"),
+        slow(every_kind, "outputs/angle/quantiles/0.5", "WeightedMixture.quantile"),
         (every_kind, "outputs/angle/effective_rows", "importance_weights.effective_rows"),
         slow(every_kind, "regime/slow", "means.weighted_share"),
         (linear, "outputs/y/mean", "means.weighted_moments"),
@@ -410,10 +410,13 @@ def test_numbers_of_the_answer_are_those_of_its_sentences_and_have_keys(uq, writ
     check(crossed(), "answer", every=17)
     key = "answer/quantities/life[side=left,depth=0.5]/promise"
     numbers, quantities = traced(Result(ds), key).numbers, api.answer(ds).quantities
-    promise = next(
+    tolerance_bound = next(
         quantity for quantity in quantities if quantity.name == "life[side=left,depth=0.5]"
-    ).promise
-    assert (numbers["lower"], numbers["sentence"]) == (promise.lower, promise.sentence)
+    ).tolerance_bound
+    assert (numbers["lower"], numbers["sentence"]) == (
+        tolerance_bound.lower,
+        tolerance_bound.sentence,
+    )
     uq("run", write_study("exponential-wear", uncertain=("rate",), law=LAW), "-o", "out.nc")
     whole = strict_json(uq("summary", "out.nc", "--json").out)
     entry = whole["answer"]["quantities"]["life"]["range"]

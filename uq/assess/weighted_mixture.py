@@ -1,4 +1,4 @@
-"""Sample of rows with weights or laws of lives: probabilities and quantiles of the mixture."""
+"""Sample of rows with weights or laws of lives: the weighted mixture of the laws of the rows."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,23 +18,28 @@ from uq.assess.sample import (
     on_side,
     share,
 )
-from uq.assess.scale_laws import learnt_terms
+from uq.assess.scale_laws import posterior_terms
 from uq.contract import Floats, Mask
 from uq.result.element import Element
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import Smoothed
+from uq.stats.importance_weights import ImportanceWeights
 from uq.stats.intervals import (
     CONFIDENCE,
     ROUNDING,
-    Replicates,
     is_constant,
-    replicates_of_some,
     share_interval,
     upper_probability,
 )
 from uq.stats.roots import root
-from uq.stats.weighted_means import EXACT, fewest_rows, hits_behind, pulls, trusted, weighted_share
+from uq.stats.weighted_means import (
+    EXACT,
+    binomial_sizes,
+    fewest_rows,
+    if_reliable,
+    weighted_part_means,
+    weighted_share,
+)
 
 _TOLERANCE = 1e-12
 _FARTHEST = 60  # steps of growing length from a quantile to the end of its interval
@@ -46,7 +51,7 @@ _CENSORED = "rows were censored before that time"
 
 
 @dataclass(frozen=True)
-class Population(Sample):
+class WeightedMixture(Sample):
     """Rows of an element with weights, or with the law of a life each: a weighted mixture.
 
     References
@@ -59,9 +64,9 @@ class Population(Sample):
     def by(self) -> dict[str, Functions]:
         """The functions that compute each estimate, by its name here."""
         return super().by | {
-            "probability_above": (Population.probability_above, Population),
-            "probability_below": (Population.probability_below, Population),
-            "quantile": (Population.quantile, Population),
+            "probability_above": (WeightedMixture.probability_above, WeightedMixture),
+            "probability_below": (WeightedMixture.probability_below, WeightedMixture),
+            "quantile": (WeightedMixture.quantile, WeightedMixture),
             "never_ending": (share_interval,) if self.weights is None else BY_WEIGHTS,
         }
 
@@ -78,19 +83,21 @@ class Population(Sample):
     def below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold), undefined rows on neither side."""
         kept = ~self.element.failed
-        return self._share(self.element.below(threshold), kept, self._part(kept, threshold))
+        return self._share(self.element.below(threshold), kept, self._dependence(kept, threshold))
 
     def above(self, threshold: float) -> Estimate:
         """Estimate P(Y > threshold), undefined rows on neither side."""
         kept = ~self.element.failed
-        return self._share(self.element.above(threshold), kept, self._part(kept, threshold, -1))
+        return self._share(
+            self.element.above(threshold), kept, self._dependence(kept, threshold, -1)
+        )
 
     def outliving(self, time: float) -> Estimate:
         """Estimate P(T > time) among the rows that have a life; unknown once rows were censored."""
         if self.element.unknown_sides(time).any():
             return Estimate(reason=_CENSORED)
         kept = self.element.present
-        return self._share(self.element.above(time), kept, self._part(kept, time, -1))
+        return self._share(self.element.above(time), kept, self._dependence(kept, time, -1))
 
     def quantile(self, probability: float) -> Estimate:
         """Estimate a quantile.
@@ -136,10 +143,10 @@ class Population(Sample):
         if self.element.weights is not None or not kept.any():
             return nan
         threshold = self.middle(probability)
-        part = replicates_of_some(self.part, kept)
+        dependence = self.dependence[kept]
         worth = np.ones(int(kept.sum()))
         integrated, plain = (
-            pulls(rows.below(threshold)[kept], worth, part)
+            weighted_part_means(rows.below(threshold)[kept], worth, dependence)
             for rows in (self.element, self.element.plain)
         )
         if len(integrated) < _SHOW_VARIANCE or is_constant(integrated):
@@ -154,7 +161,7 @@ class Population(Sample):
         """Return the estimator of a quantile, located anew in each study compared."""
 
         def rows(other: Element) -> SelectedRows:
-            at = Population(other, None).middle(probability)
+            at = WeightedMixture(other).middle(probability)
             return SelectedRows(other.present, other.below(at))
 
         return replace(share(rows), counts_hits=False)
@@ -162,12 +169,13 @@ class Population(Sample):
     def _share_never_ending(self, kept: Mask) -> Estimate:
         if self.element.weights is None:
             return super()._share_never_ending(kept)
-        part = replicates_of_some(self.part, kept)
-        return self._share(self.element.never.astype(float), kept, part)
+        return self._share(self.element.never.astype(float), kept, self.dependence[kept])
 
-    def _share(self, numbers: Floats, kept: Mask, part: Replicates) -> Estimate:
+    def _share(self, numbers: Floats, kept: Mask, dependence: Dependence) -> Estimate:
         """Estimate a probability, or give the reason why the weights do not support it."""
-        estimate = weighted_share(numbers[kept], self._weights(kept), part, None, self.confidence)
+        estimate = weighted_share(
+            numbers[kept], self._weights(kept), dependence, None, self.confidence
+        )
         return self._trusted(estimate, kept)
 
     def _weights(self, kept: Mask) -> Floats | None:
@@ -175,24 +183,25 @@ class Population(Sample):
         weights = self.element.weights
         return None if weights is None else weights[kept]
 
-    def _part(self, kept: Mask, time: float, side: int = 1) -> Replicates:
-        """Return the clusters for the variance of P(T < time), the error of a shared law included.
+    def _dependence(self, kept: Mask, time: float, side: int = 1) -> Dependence:
+        """Return the dependence of some rows, for the variance of P(T < time).
 
-        Where rows are means over what they have learnt together, the law that they have learnt
-        depends on how the terms go together with T < time inside each.
+        Where rows are means over a law estimated from all of them, the influence of this law is
+        the covariance of its terms and T < time within each row.
         """
-        part, weights = replicates_of_some(self.part, kept), self._weights(kept)
-        if not isinstance(part, Clusters) or part.together is None or weights is None:
-            return part
-        terms = learnt_terms(self.element.law, self.element.values, time)
+        dependence, weights = self.dependence[kept], self._weights(kept)
+        if dependence.shared is None or weights is None:
+            return dependence
+        terms = posterior_terms(self.element.law, self.element.values, time)
         if terms is None:
-            return part
-        follows, by = (of_rows[kept] for of_rows in terms)
+            return dependence
+        of_row, times_below = (of_rows[kept] for of_rows in terms)
         worth = weights / weights.sum()
-        joint = worth @ by - (worth @ self.element.below(time, signed=True)[kept]) * (
-            worth @ follows
+        covariance = worth @ times_below - (worth @ self.element.below(time, signed=True)[kept]) * (
+            worth @ of_row
         )
-        return part.with_together(part.together.going_with(side * joint))
+        shared = dependence.shared.with_covariance(side * covariance)
+        return replace(dependence, shared=shared)
 
     def _trusted(self, estimate: Estimate, kept: Mask) -> Estimate:
         """Return an estimate, or why the weights of the rows behind it do not allow one.
@@ -203,8 +212,7 @@ class Population(Sample):
         weights = self.element.weights
         if weights is None or not kept.any():
             return estimate
-        part = replicates_of_some(self.part, kept)
-        return trusted(estimate, weights[kept], part, self.element.most)
+        return if_reliable(estimate, weights[kept], self.dependence[kept], self.element.most)
 
     def _near(self, value: float) -> tuple[Callable[[float], Estimate], float]:
         """Return a function that estimates P(Y < y) among the rows that have a value.
@@ -213,13 +221,13 @@ class Population(Sample):
         where rows happen to agree. With it the fewest rows of which it has the interval of hits.
         """
         kept = self.element.present
-        weights, part = self._weights(kept), self._part(kept, value)
-        hits = hits_behind(self.element.below(value, signed=True)[kept], weights, part)
+        weights, dependence = self._weights(kept), self._dependence(kept, value)
+        hits = binomial_sizes(self.element.below(value, signed=True)[kept], weights, dependence)
 
         @cache  # both ends of an interval are sought from the same places
         def share(y: float) -> Estimate:
             return weighted_share(
-                self.element.below(y, signed=True)[kept], weights, part, hits, self.confidence
+                self.element.below(y, signed=True)[kept], weights, dependence, hits, self.confidence
             )
 
         return share, fewest_rows(hits)
@@ -335,33 +343,32 @@ class Population(Sample):
         return Estimate(value, low, high, self._why_open(probability, low, high, rows))
 
 
-BY_WEIGHTS: Functions = (Population,)
-"""The functions that compute the estimates of a population from weights and laws of its rows."""
+BY_WEIGHTS: Functions = (WeightedMixture,)
+"""The functions that compute the estimates of a mixture from weights and laws of its rows."""
 
 
 def as_sample(
     element: Element,
-    part: Replicates,
+    dependence: Dependence,
     confidence: float = CONFIDENCE,
-    weights: Smoothed | None = None,
+    weights: ImportanceWeights | None = None,
 ) -> Sample:
     """Return the rows of an element as a sample, by the strategy that suits them.
 
     `CountedRows` where all rows are of equal weight and have the lives that were computed;
-    `Population` where rows have weights, or an input of a life is integrated exactly.
+    `WeightedMixture` where rows have weights, or an input of a life is integrated exactly.
 
     Parameters
     ----------
     element : Element
-    part : ndarray of int, shape (n,), or None
-        The replicate or cluster of each row.
+    dependence : Dependence
     confidence : float, optional
         Of intervals.
-    weights : Smoothed, optional
+    weights : ImportanceWeights, optional
         Of the rows with lives as computed.
     """
-    strategy = CountedRows if element.is_plain else Population
-    return strategy(element, part, confidence, weights)
+    strategy = CountedRows if element.is_plain else WeightedMixture
+    return strategy(element, dependence, confidence, weights)
 
 
 def first_step(

@@ -9,9 +9,8 @@ from scipy import special, stats
 from uq.assess.comparison import compare
 from uq.assess.integrated_inputs import elements_with_laws
 from uq.result.result import Result
-from uq.stats.clusters import Clusters
+from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.importance_weights import effective_rows
-from uq.stats.jumps import EvenReplicates
 from uq.stats.two_samples import difference
 from uq.stats.weighted_means import EXACT, FEW, moments_of_rows, share_to_compare, weighted_share
 
@@ -106,8 +105,8 @@ def test_samples_of_several_rows_count_once():
     rng = np.random.default_rng(1)
     shared = np.repeat(rng.random(60), 20)
     numbers = np.clip(shared + 0.01 * rng.random(1200), 0, 1)
-    of = Clusters(np.repeat(np.arange(60), 20), 60)
-    wide, narrow = (weighted_share(numbers, part=part) for part in (of, None))
+    of = Dependence(np.repeat(np.arange(60), 20), samples=60, are_samples=True)
+    wide, narrow = (weighted_share(numbers, dependence=rows) for rows in (of, INDEPENDENT))
     assert wide.high - wide.low > 4 * (narrow.high - narrow.low)
 
 
@@ -135,6 +134,6 @@ def test_replicates_without_a_heavy_row_do_not_show_their_error():
         order = np.concatenate([random.permutation(128) for _ in range(8)])
         x = -np.log1p(-(order + random.random(1024)) / 128)
         weights = np.exp(x * (1 - 1 / 1.3))
-        moments = moments_of_rows(x, weights, EvenReplicates(replicate, x[:, None]))
+        moments = moments_of_rows(x, weights, Dependence(replicate, x[:, None]))
         covered.append([estimate.low <= 1.3 <= estimate.high for estimate in moments])
     assert np.mean(covered, axis=0).min() >= 0.9

@@ -10,10 +10,10 @@ from scipy import special
 
 from uq.assess.comparison import compare
 from uq.assess.integrated_inputs import elements_with_laws, integrated
-from uq.assess.population import Population
 from uq.assess.row_inputs import inputs_of
 from uq.assess.summary_table import summary
 from uq.assess.survival import survival
+from uq.assess.weighted_mixture import WeightedMixture
 from uq.result.elements import independent_rows
 from uq.result.result import Result
 from uq.sampling.laws import law_of
@@ -108,7 +108,7 @@ def test_a_few_rows_say_what_very_many_say(case):
         assert abs(probability.value - p) < (probability.high - probability.low) + 4 * np.sqrt(
             p * (1 - p) / 60_000
         )
-        plain = Population(rows.element.plain, None).below(time)
+        plain = WeightedMixture(rows.element.plain).below(time)
         assert probability.high - probability.low < 0.9 * (plain.high - plain.low)
         assert rows.quantile(probability.value).value == pytest.approx(time, rel=1e-9)
 
@@ -200,8 +200,8 @@ def test_each_level_is_integrated_by_itself():
     assert (unit_part.inputs, world.inputs) == (("a",), ("b",))
     z, weight = np.polynomial.hermite_e.hermegauss(60)
     probability = sum(
-        w * unit_part.below(element.values * np.exp(longer), 0.7)
-        for w, longer in zip(weight / weight.sum(), world.longer(z), strict=True)
+        w * unit_part.below(element.values * np.exp(shifts), 0.7)
+        for w, shifts in zip(weight / weight.sum(), world.log_life_shifts(z), strict=True)
     )
     assert probability == pytest.approx(element.below(0.7), abs=1e-10)
 
