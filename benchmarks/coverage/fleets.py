@@ -11,6 +11,7 @@ from uq.assess.fleet_units import Units
 from uq.assess.scale_laws import IndependentScale
 from uq.result.element import Element
 from uq.result.nesting import Nesting
+from uq.stats.dependent_rows import INDEPENDENT
 from uq.stats.importance_weights import smoothed
 
 SAMPLES = 200
@@ -90,7 +91,7 @@ def other_laws(name, repetitions):
         nothing = np.zeros(life.size, dtype=bool)
         element = Element("life", "life", LIFE, {}, life, nothing, nothing)
         units = Units(element, place, None, ("strength",))
-        failed = FleetNumbers(units, COUNTED_SIZE, 0, None, True).failed(BY)
+        failed = FleetNumbers(units, COUNTED_SIZE, 0, INDEPENDENT, True).failed(BY)
         for end, share in (("low", LOW), ("high", HIGH)):
             truth = COUNTED_SIZE * -np.expm1(-((BY / law.ppf(1 - share)) ** 2))
             quantity = f"number ended, {100 * share:g} % of samples"
@@ -147,7 +148,7 @@ def shared_scale(repetitions):
         tally = Tally(name + f" and {rest:g} beside it" * bool(rest), REASONS | OF_COUNTS)
         rng = np.random.default_rng(3)
         for _ in range(repetitions):
-            fleet = FleetNumbers(worlds_scaled(rest, rng), size, allow, None, True)
+            fleet = FleetNumbers(worlds_scaled(rest, rng), size, allow, INDEPENDENT, True)
             failed, kept = fleet.failed(time), fleet.at_most_allowed(time)
             tally.estimate("number ended", size * over_worlds(ended), failed.estimate)
             share = over_worlds(lambda z, p=ended: special.bdtr(allow, size, p(z)))
@@ -174,7 +175,9 @@ def fleets(name, repetitions):
     reached = -np.expm1(np.log(0.5) / size)
     rng = np.random.default_rng(7)
     for _ in range(repetitions):
-        fleet = FleetNumbers(drawn(units, integrated, weighted, rng), size, allow, None, True)
+        fleet = FleetNumbers(
+            drawn(units, integrated, weighted, rng), size, allow, INDEPENDENT, True
+        )
         first, failed, kept = fleet.first(0.5), fleet.failed(time), fleet.at_most_allowed(time)
         tally.estimate("median of the first", np.exp(middle), first.estimate)
         mean = over_worlds(lambda z: given(time, z))

@@ -31,6 +31,7 @@ from uq.indices.sobol import sobol_indices
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
+from uq.stats.dependent_rows import INDEPENDENT
 from uq.stats.estimate import NOTHING
 from uq.study.file import DesignTable, Until
 
@@ -126,7 +127,9 @@ def integrated(repetitions):
     for seed in range(repetitions):
         rest, drawn = np.random.default_rng(seed).standard_normal((2, design.samples))
         elements = [scaled.element(rest[:n], drawn[:n], scaled.lognormal_term(1.0)) for n in sizes]
-        looks.append([stopping.statistic(element, until, None, level) for element in elements])
+        looks.append(
+            [stopping.statistic(element, until, INDEPENDENT, level) for element in elements]
+        )
     truth = float(np.exp(np.sqrt(2) * stats.norm.ppf(0.1)))
     _stop(tally, "B10", looks, [[truth] * len(sizes)] * repetitions)
     return tally.lines()

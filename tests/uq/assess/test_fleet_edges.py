@@ -8,6 +8,7 @@ from scipy import special, stats
 from uq.assess.fleet import fleet_facts, fleet_of
 from uq.assess.random_effects import DeconvolvedProbability
 from uq.result.result import Result
+from uq.stats.dependent_rows import INDEPENDENT
 
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
 
@@ -90,7 +91,7 @@ def test_a_few_units_leave_the_ends_of_the_band_open(units):
     for _ in range(20):
         probits = -1.4 - 2 * rng.standard_normal((100, 1))
         ended = rng.random((100, units)) < special.ndtr(probits)
-        points = DeconvolvedProbability(ended[..., None].astype(float), np.ones(1), None)
+        points = DeconvolvedProbability(ended[..., None].astype(float), np.ones(1), INDEPENDENT)
         ends = (points(least), 0.95), (points(most), 0.05)
         held += [quantile.low < share < quantile.high for quantile, share in ends]
     assert np.mean(held) >= 0.85

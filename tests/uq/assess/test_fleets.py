@@ -17,6 +17,7 @@ from uq.files.whole_files import write_result
 from uq.result.elements import elements_of
 from uq.result.result import Result
 from uq.stats.counting import at_most
+from uq.stats.dependent_rows import INDEPENDENT
 
 
 @pytest.mark.parametrize(("size", "allow"), [(1, 0), (3, 0), (3, 1), (3, 5), (6, 2), (7, 0)])
@@ -173,10 +174,10 @@ def test_the_noise_of_units_is_no_spread():
     """Samples that differ by the luck of their units alone have no band."""
     rng = np.random.default_rng(3)
     ended = (rng.random((100, 10, 1)) < 0.3).astype(float)
-    spread = DeconvolvedProbability(ended, np.ones(1), None)
+    spread = DeconvolvedProbability(ended, np.ones(1), INDEPENDENT)
     if not spread.refusal:
         assert spread(0.45).value < 0.05 and spread(0.15).value > 0.95
-    single = DeconvolvedProbability(ended[:, :1], np.ones(1), None)
+    single = DeconvolvedProbability(ended[:, :1], np.ones(1), INDEPENDENT)
     assert single.refusal == ONE_UNIT
 
 

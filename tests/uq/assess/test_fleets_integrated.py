@@ -14,6 +14,7 @@ from uq.assess.fleet_units import units_of
 from uq.result.elements import elements_of
 from uq.result.result import Result
 from uq.stats.counting import at_most
+from uq.stats.dependent_rows import INDEPENDENT
 
 
 def test_the_first_of_many_by_brute_force():
@@ -130,7 +131,7 @@ def test_each_level_is_integrated_where_it_belongs(beside, allow):
     truth = np.average(np.reshape(kept, (-1, 6)).mean(axis=1), weights=np.exp(-(z**2) / 2))
     units = units_of(Result(ds), next(elements_of(ds, ["life"])))
     assert set(units.integrated) == {"b", *inside}
-    integrals = units.fleet(size, allow, None)
+    integrals = units.fleet(size, allow, INDEPENDENT)
     assert integrals.below(time).value == pytest.approx(1 - truth, abs=5e-3)
     assert integrals.below(integrals.middle(0.3)).value == pytest.approx(0.3, abs=1e-9)
 
