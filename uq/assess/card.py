@@ -9,7 +9,7 @@ import numpy as np
 
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
-from uq.assess.answer.contributions import AverageEffect, Contribution
+from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.rankings import Ranking
@@ -29,7 +29,7 @@ from uq.contract import Status
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PLAIN
 from uq.stats import estimate_json
-from uq.text.numbers import capitalized, counted, grouped, percent
+from uq.text.numbers import capitalized, counted, percent, rows_in_words
 from uq.text.units import readable
 
 MOST_CAUSES = 4
@@ -43,24 +43,22 @@ class LeadingInput(NamedTuple):
     Attributes
     ----------
     contribution : Contribution
-    effect : AverageEffect or None
-        Average change of the subject with the first input; None if unknown.
     tightened : TighterTolerance or None
         A number of the subject with half the scatter of the inputs; None if unknown.
     """
 
     contribution: Contribution
-    effect: AverageEffect | None
     tightened: TighterTolerance | None
 
     def json(self, share_of: str) -> Iterator[dict[str, Any]]:
         """Yield the numbers of each input."""
-        effect = None if self.effect is None else self.effect.fact("").json
+        effects = dict(zip(self.contribution.inputs, self.contribution.changes, strict=False))
         tightened = None if self.tightened is None else self.tightened.fact.json
         indices = self.contribution.indices
         for name, index in zip(self.contribution.inputs, indices, strict=True):
             numbers = [estimate_json.number(number) for number in index.numbers]
             shares = dict(zip(("share", "low", "high"), numbers, strict=True))
+            effect = effects[name].fact("").json if name in effects else None
             about = {"of": share_of, "effect": effect, "tightened": tightened}
             yield {"input": name} | shares | about
 
@@ -214,7 +212,6 @@ def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator
     compared = [entry for advice in answer.advice for entry in advice.tolerances]
     wanted = [entry for entry in compared if lead and entry.is_share != lead.is_life] or compared
     for contribution in ranking.contributions[:MOST_CAUSES]:
-        effect = contribution.changes[0] if contribution.changes else None
         shown = None
         if lead is not None and wanted:
             same = [entry for entry in compared if set(entry.inputs) == set(contribution.inputs)]
@@ -228,7 +225,7 @@ def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator
                 ),
                 None,
             )
-        yield LeadingInput(contribution, effect, shown)
+        yield LeadingInput(contribution, shown)
 
 
 def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]:
@@ -288,14 +285,15 @@ def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
                 verb = "is" if len(entry.inputs) == 1 else "are"
                 yield f"state in 'source' how {words} {verb} known"
             case "rows" if entry.rows is not None:
-                yield f"{STUDY} {grouped(entry.rows)} {result.row_name[1]} in all"
+                yield f"{STUDY} about {rows_in_words(entry.rows)} {result.row_name[1]} in all"
             case "failed":
                 again = f"uq rerun {result.file} --failed{result.model_option}"
                 yield f"fix the failed rows, then {again}"
             case "finer":
                 yield "compute more accurate rows, not more"
             case "keep":
-                yield f"keep {words} in its good range"
+                place = entry.place.replace("between ", "in ").replace(" and ", " to ")
+                yield f"keep {words} {place}"
             case "nothing" if len(advice) == 1:
                 yield "nothing: the question is settled"
 

@@ -83,7 +83,6 @@ def headlines(findings: Findings, answer: Answer) -> Iterator[Headline]:
 def _of_event(quantity: Quantity, event: Event) -> Headline:
     key = key_of("quantities", quantity.name, "events", event.name, "share", verb="answer")
     label = event.predicate.removesuffix(" in magnitude").replace("exceed", "beyond")
-    label = label.removeprefix("fail ").removeprefix("succeed ")
     return Headline(key, label, event.share, "1", None, leads=not quantity.is_life)
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from markupsafe import Markup
 
+from uq.assess.answer.contributions import AverageEffect
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import DisplayUnit, called_together
 from uq.assess.card import STUDY, Card, LeadingInput, card_of, statistic_name
@@ -118,8 +119,9 @@ def _lines_of(card: Card) -> list[Line]:
     short = _with_commands([line for block in blocks for line in block])
     if len(short) <= SHORT:
         return short
-    fewer = replace(card, causes=card.causes[:-1])
-    for shown, is_cut in ((card, False), (fewer, False), (card, True)):
+    counts = range(len(card.causes), max(len(card.causes) - 3, 0), -1)
+    fewer = ((replace(card, causes=card.causes[:count]), False) for count in counts)
+    for shown, is_cut in (*fewer, (card, True)):
         blocks = [block for block in _blocks(shown, is_short=False, is_cut=is_cut) if block]
         lines = [line for block in blocks for line in (Line(""), *block)][1:]
         lines = _with_commands(lines)
@@ -199,8 +201,10 @@ def _widths(card: Card) -> tuple[int, int]:
 
 def label_of(line: Headline, card: Card) -> str:
     """Return the label of a number as it is shown."""
-    is_range = isnan(line.estimate.value)
-    return printed(f"90 % of {card.row_name[1]}" if is_range else line.label)
+    if isnan(line.estimate.value):
+        return printed(f"90 % of {card.row_name[1]}")
+    *words, last = line.label.split(" ")
+    return printed(" ".join([*words, _BRIEF.get(last, last)]))
 
 
 def number_of(line: Headline) -> str:
@@ -273,7 +277,7 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
 
 def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     """Return two lines of header, by column, and the cells of each cause."""
-    steps = {cause.effect.step for cause in card.causes if cause.effect is not None}
+    steps = {cause.contribution.changes[0].step for cause in card.causes if _has_changes(cause)}
     step = steps.pop() if len(steps) == 1 else ""
     header = [
         ("CAUSES", ""),
@@ -293,7 +297,7 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
         [
             called_together(cause.contribution.inputs).removeprefix("both "),
             _share(cause),
-            _effect(cause) if step else _law(cause),
+            _effects(cause, step) if step else _law(cause),
             printed(_tightened(cause)),
         ]
         for cause in card.causes
@@ -329,14 +333,29 @@ def _law(cause: LeadingInput) -> str:
     return printed(f"{' '.join(words)} ({now})")
 
 
-def _effect(cause: LeadingInput) -> str:
-    effect = cause.effect
-    if effect is None or effect.direction == 0:
+def _has_changes(cause: LeadingInput) -> bool:
+    return bool(cause.contribution.changes)
+
+
+def _effects(cause: LeadingInput, step: str) -> str:
+    """Return the changes with this step of each of at most two inputs."""
+    changes = cause.contribution.changes
+    if len(changes) > 2 or not any(change.direction for change in changes):
         return ""
-    sign = "+" if effect.direction > 0 else "-"
-    if not effect.step or not effect.by.has_interval:
+    if any(change.step != step for change in changes):
+        return ""
+    texts = [_changed(change) for change in changes]
+    texts[:-1] = [text.removesuffix(f" {changes[-1].unit.name}") for text in texts[:-1]]
+    return printed(", ".join(texts)).replace(_POINTS, "points")
+
+
+def _changed(change: AverageEffect) -> str:
+    if change.direction == 0:
+        return "unclear"
+    sign = "+" if change.direction > 0 else "-"
+    if not change.step or not change.by.has_interval:
         return sign
-    return printed(f"{sign}{effect.unit.text(abs(effect.by.value))}").replace(_POINTS, "points")
+    return f"{sign}{change.unit.text(abs(change.by.value))}"
 
 
 def _value(tolerance: TighterTolerance, value: float) -> str:

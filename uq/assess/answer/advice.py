@@ -178,16 +178,18 @@ def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
     if mark_of(result, event.over) == ASSUMED:  # an assumed quantity cannot be adjusted
         return
     if local.low > overall.high if more else local.high < overall.low:
-        where, key_name = f"{event.part(place)}: {share_text(local)} do there", "decided_by"
+        kept, key_name = event.part(place), "decided_by"
+        result_there = f"{share_text(local)} do there"
         if event.limit is not None and not event.limit.why:
             limit, key_name = event.limit, "limit"
-            where = f"{limit.place}: {limit.few} do there{limit.averaged}"
+            kept, result_there = limit.place, f"{limit.few} do there{limit.averaged}"
         yield Advice(
             "keep",
             f"To {'increase' if more else 'reduce'} the share that {event.clause}, keep"
-            f" {called(event.over)} {where}.",
+            f" {called(event.over)} {kept}: {result_there}.",
             (event.over,),
             key=key_of("quantities", lead.name, "events", event.name, key_name, verb="answer"),
+            place=kept,
         )
 
 

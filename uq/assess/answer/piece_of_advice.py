@@ -31,6 +31,8 @@ class Advice:
         Other tolerances of about the same effect.
     tolerances : tuple of TighterTolerance
         All that were compared: of each tolerance, every number that it would change.
+    place : str
+        Range of the input that is to be kept.
     """
 
     rule: str
@@ -41,6 +43,7 @@ class Advice:
     key: str = ""
     alike: tuple[TighterTolerance, ...] = ()
     tolerances: tuple[TighterTolerance, ...] = ()
+    place: str = ""
 
     @property
     def fact(self) -> Fact:

@@ -125,9 +125,12 @@ def _cells(
         SHARE if contribution.share_of_variance else "index",
         (first.low, first.high) if is_single else (contribution.value,) * 2,
     )
-    moved = cause.effect is not None and cause.effect.step and cause.effect.by.has_interval
-    traced = key_of(*place, "effects", contribution.inputs[0], verb="answer")
-    yield Cell(effect, traced=traced if has_effects and moved else "")
+    moved = [
+        key_of(*place, "effects", name, verb="answer")
+        for name, change in zip(contribution.inputs, contribution.changes, strict=False)
+        if change.step and change.by.has_interval
+    ]
+    yield Cell(effect, traced="\n".join(moved) if has_effects and effect else "")
     value, _, interval = tightened.partition(" (")
     key = "" if cause.tightened is None else cause.tightened.key
     yield Cell(value, interval.removesuffix(")"), traced=key)
