@@ -17,8 +17,9 @@ from uq.contract import Floats
 from uq.result.result import Result
 from uq.stats import intervals, two_samples
 from uq.stats.estimate import Estimate
-from uq.stats.intervals import exact_interval
+from uq.stats.intervals import OUTLYING_ROWS, exact_interval
 from uq.stats.jumps import widened_for_jumps
+from uq.stats.moments import OUTLYING_SQUARES
 from uq.stats.weighted_means import share_to_compare
 from uq.study.file import Tied
 
@@ -183,12 +184,34 @@ class Pair:
         elif estimator.averages:
             estimates = [self._averaged(i, sample) for i, sample in enumerate(samples)]
         elif self._shared is not None and not estimator.is_share:
-            estimates = [
-                _students(estimator, *pair) for pair in zip(samples, estimates, strict=True)
-            ]
+            return self._difference_of_moments(estimator, samples, estimates)
         between = two_samples.difference(
             estimates[0], estimates[1], self._correlation(estimator, samples)
         )
+        return self._without_rounding(between, estimates)
+
+    def _difference_of_moments(
+        self, estimator: Estimator, samples: list[SelectedRows], estimates: list[Estimate]
+    ) -> Estimate:
+        """Return the difference of two means or standard deviations of paired rows.
+
+        From Student's intervals, widened for outliers that the pairs lack; of standard deviations,
+        which a few rows may decide, together with the one from their separate intervals.
+        """
+        correlation = self._correlation(estimator, samples)
+        students = [_students(estimator, *pair) for pair in zip(samples, estimates, strict=True)]
+        between = two_samples.difference(students[0], students[1], correlation)
+        if between.has_interval:
+            shift = self._outlier_shift(estimator, samples)
+            low, high = between.low + min(shift, 0.0), between.high + max(shift, 0.0)
+            between = Estimate(between.value, low, high, between.reason)
+        if estimator.is_scale:
+            separate = two_samples.difference(estimates[0], estimates[1], correlation)
+            between = _envelope(between, separate)
+        return self._without_rounding(between, estimates)
+
+    def _without_rounding(self, between: Estimate, estimates: list[Estimate]) -> Estimate:
+        """Return a difference without interval if each pair is equal but for rounding."""
         wide = sum(estimate.high - estimate.low for estimate in estimates)
         if self._paired and between.high - between.low <= _ROUNDING * wide < np.inf:
             return Estimate(between.value)  # equal in each pair, but for rounding
@@ -233,9 +256,31 @@ class Pair:
             return _factor(
                 estimates[1].value / estimates[0].value, by_replicate[1], by_replicate[0]
             )
-        if self._shared is not None:
-            estimates = [_students(SD, *pair) for pair in zip(samples, estimates, strict=True)]
-        return two_samples.ratio(estimates[0], estimates[1], self._correlation(SD, samples))
+        correlation = self._correlation(SD, samples)
+        separate = two_samples.ratio(estimates[0], estimates[1], correlation)
+        if self._shared is None:
+            return separate
+        students = [_students(SD, *pair) for pair in zip(samples, estimates, strict=True)]
+        factor = two_samples.ratio(students[0], students[1], correlation)
+        if factor.has_interval:
+            shift = self._outlier_shift(SD, samples, relative=True)
+            low, high = (float(np.exp(end)) for end in (min(shift, 0.0), max(shift, 0.0)))
+            factor = Estimate(factor.value, factor.low * low, factor.high * high, factor.reason)
+        return _envelope(factor, separate)
+
+    def _outlier_shift(
+        self, estimator: Estimator, samples: list[SelectedRows], *, relative: bool = False
+    ) -> float:
+        """Return the shift of a difference of moments by further outliers among the pairs.
+
+        Outliers of rows that differ little between the results cancel; those of a law with another
+        scatter do not.
+        """
+        assert self._shared is not None, "rows are paired"
+        first, second = (_contributions(estimator, sample, relative) for sample in samples)
+        apart = second[self._shared[1]] - first[self._shared[0]]
+        more = OUTLYING_SQUARES if estimator.is_scale else OUTLYING_ROWS
+        return intervals.outlier_shift(0.0, apart, more)
 
     @property
     def unpaired(self) -> float:
@@ -302,11 +347,26 @@ def _influence(estimator: Estimator, sample: SelectedRows) -> SelectedRows:
     return SelectedRows(sample.kept, influence)
 
 
+def _envelope(first: Estimate, second: Estimate) -> Estimate:
+    """Return an estimate with the interval that holds both; without one if either has none."""
+    if not (first.has_interval and second.has_interval):
+        return first if not first.has_interval else second
+    low, high = min(first.low, second.low), max(first.high, second.high)
+    return Estimate(first.value, low, high, first.reason)
+
+
+def _contributions(estimator: Estimator, sample: SelectedRows, relative: bool) -> Floats:
+    """Return the influence of each row on a moment, over the moment if `relative`."""
+    numbers, kept = np.zeros(len(sample.numbers)), sample.numbers[sample.kept]
+    numbers[sample.kept] = estimator.influence(kept) / (estimator.of(kept) if relative else 1.0)
+    return numbers
+
+
 def _students(estimator: Estimator, sample: SelectedRows, estimate: Estimate) -> Estimate:
     """Return a moment with Student's interval, from which the difference of paired rows is built.
 
-    The interval of a single moment allows for outliers that its rows do not show; most of them
-    cancel in the difference.
+    The interval of a single moment allows for outliers that its rows do not show; those of pairs
+    are allowed for in the difference.
     """
     if not estimate.has_interval:
         return estimate

@@ -173,7 +173,13 @@ def mean_interval(
     return widened_for_outliers(mean, ends, dependence.part_means(values))
 
 
-def widened_for_outliers(value: float, ends: Ends, estimates: Floats, more: int = 2) -> Ends:
+OUTLYING_ROWS = 2
+"""Number of further outliers for which the interval of a mean is widened."""
+
+
+def widened_for_outliers(
+    value: float, ends: Ends, estimates: Floats, more: int = OUTLYING_ROWS
+) -> Ends:
     """Return an interval widened for further outliers as extreme as the most extreme estimate.
 
     Parameters
@@ -196,7 +202,7 @@ def widened_for_outliers(value: float, ends: Ends, estimates: Floats, more: int 
     return ends[0] + min(move, 0.0), ends[1] + max(move, 0.0)
 
 
-def outlier_shift(value: float, estimates: Floats, more: int = 2) -> float:
+def outlier_shift(value: float, estimates: Floats, more: int = OUTLYING_ROWS) -> float:
     """Return the shift of a mean by further outliers as extreme as the most extreme estimate."""
     return float(more * ((estimates.max() - value) - (value - estimates.min())) / len(estimates))
 

@@ -17,6 +17,7 @@ from scipy import stats
 
 import uq as api
 from uq.contract import Status
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import wilson_interval
 from uq.stats.moments import sd_interval
@@ -55,11 +56,14 @@ def test_a_difference_of_paired_shares_has_the_published_interval():
 
 
 @pytest.mark.parametrize("design", [{}, {"samples": 100, "replicates": 2}])
-def test_pairs_of_rows_give_the_interval_of_students_paired_test(design):
+def test_pairs_of_rows_give_students_paired_test_and_allow_for_two_more_outliers(design):
     first, other = study(FOUR, **design), study(FOUR | {"x4": NARROW}, **design)
     line = api.compare(first, other).loc[("y", "mean")]
     test = stats.ttest_rel(other["y"].values, first["y"].values).confidence_interval()
-    assert (line["low"], line["high"]) == pytest.approx(tuple(test))
+    apart = other["y"].values - first["y"].values
+    shift = 2 * (apart.max() + apart.min() - 2 * apart.mean()) / len(apart)
+    widened = test.low + min(shift, 0.0), test.high + max(shift, 0.0)
+    assert (line["low"], line["high"]) == pytest.approx(widened)
     assert line["difference"] == pytest.approx(float(other["y"].mean() - first["y"].mean()))
 
 
@@ -146,7 +150,7 @@ def test_what_was_changed_is_named_and_what_it_bought():
     assert comparison["only"]["sd"]["b"] == pytest.approx(0.4 * comparison["only"]["sd"]["a"])
     ratio = comparison["outputs"]["y"]["sd"]["ratio"]
     truth = ((1 + 4 + 9 + 0.16 * 16) / 30) ** 0.5
-    assert ratio["low"] < truth < ratio["high"] and ratio["high"] - ratio["low"] < 0.1
+    assert ratio["low"] < truth < ratio["high"] and ratio["high"] - ratio["low"] < 0.12
     sourced = study(FOUR | {"x4": UNIFORM | {"source": "found in a drawer"}})
     assert not compared(first, sourced)["changed"]
     fixed = {name: law for name, law in FOUR.items() if name != "x4"}
@@ -245,3 +249,20 @@ def test_differences_hold_the_truth_as_often_as_they_say(case):
         if not ("replicates" in case and key[1] == "mean"):
             print(f"{case:24} {key[1]:16} {np.mean(covers):6.1%} of {len(covers)}")
             assert np.mean(covers) >= 0.9 and len(covers) > 150, key
+
+
+def test_a_smaller_scatter_of_paired_skewed_rows_is_covered():
+    """The tail of the law that is narrowed does not cancel: exp(a) and exp(a / 2), a normal."""
+    rows, rng = 200, np.random.default_rng(5)
+    plain = linear(samples=rows)
+    truths = [(np.exp(s**2 / 2), np.sqrt(np.expm1(s**2)) * np.exp(s**2 / 2)) for s in (1.0, 0.5)]
+    wanted = [after - before for before, after in zip(*truths, strict=True)]
+    covered = []
+    for _ in range(60):
+        a = rng.standard_normal(rows)
+        pair = [Result.of(with_output(plain, "level", np.exp(s * a))) for s in (1.0, 0.5)]
+        table = api.compare(*pair)
+        ends = [table.loc[("level", name), ["low", "high"]] for name in ("mean", "sd")]
+        covered.append([low <= t <= high for (low, high), t in zip(ends, wanted, strict=True)])
+    shares = np.mean(covered, axis=0)
+    assert shares[0] >= 0.93 and shares[1] >= 0.88
