@@ -147,7 +147,7 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
         [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],
         *([causes, main, table] if card.indices_first else [main, table, causes]),
         [
-            *_labelled("CHECKS", card.checks),
+            *_labelled("CHECKS", card.checks, lines=2 if is_cut else 3),
             *(line._replace(warns=True) for line in assumed),
             *_labelled("NEXT", _fitting(card.next, is_cut=is_cut)),
         ],
@@ -309,8 +309,6 @@ def _share(cause: LeadingInput) -> str:
     contribution = cause.contribution
     if not contribution.share_of_variance:
         return contribution.size_of(contribution.indices[0]).partition(" (")[0]
-    if len(contribution.indices) > 2:
-        return f"{100 * max(contribution.value, 0):.0f} % each"
     shares = (f"{100 * max(index.value, 0):.0f}" for index in contribution.indices)
     return f"{' + '.join(shares)} %"
 
@@ -388,19 +386,19 @@ def _fitting(clauses: Sequence[str], *, is_cut: bool) -> tuple[str, ...]:
     return tuple(clauses[: 2 if fits or (STUDY in both and not is_cut) else 1])
 
 
-def _labelled(label: str, clauses: Sequence[str]) -> list[Line]:
-    """Return clauses after a label, on at most two lines: as many as fit, at least the first."""
+def _labelled(label: str, clauses: Sequence[str], lines: int = 2) -> list[Line]:
+    """Return clauses after a label, as many as fit on these lines, at least the first."""
     if not clauses:
         return []
     width = 8 if len(label) > 1 else 2
     for count in range(len(clauses), 0, -1):
         first, *others = wrap(printed("; ".join(clauses[:count])), WIDTH - width - 2)
-        if len(others) < 2:
+        if len(others) < lines:
             break
-    others = others[:1]
-    lines = [f"  {label:<{width}}{first}", *(f"  {'':<{width}}{other}" for other in others)]
+    others = others[: lines - 1]
+    texts = [f"  {label:<{width}}{first}", *(f"  {'':<{width}}{other}" for other in others)]
     places = [(2, width) if len(label) > 1 else (0, 0), *((0, 0) for _ in others)]
-    return [*map(Line, lines, places)]
+    return [*map(Line, texts, places)]
 
 
 def _same_decimals(*numbers: str) -> list[str]:

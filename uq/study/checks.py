@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from math import pi
 from typing import Any
 
 from uq.contract import Model
@@ -157,6 +158,8 @@ def _unit_faults(
     if output and output.is_lifetime and value is not None:
         if (read_quantity(value) if isinstance(value, str) else value) < 0:
             yield InputFault(path, "is before the start of the life", value)
+    if output and output.is_angle and isinstance(value, float | int) and abs(value) > pi:
+        yield InputFault(path, f"is more than half a turn [rad]; write '{value:g} degrees'", value)
     if output and isinstance(value, str) and (problem := misfit(value, name, output.unit)):
         if output.unit == "1" and isinstance(model.batch, RowByRow):
             of_life = output.is_lifetime

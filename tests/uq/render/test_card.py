@@ -14,6 +14,7 @@ from benchmarks.cards import cards_on_page
 from uq.assess.answer.wording import called_together
 from uq.render.card import SHORT, WIDTH, card, cause_columns, lines_of
 from uq.result.result import Result
+from uq.stats.estimate import Estimate
 
 STUDIES = Path(__file__).parents[3] / "studies"
 QUICK = ("exponential-wear", "ishigami")
@@ -196,3 +197,16 @@ def test_a_time_of_success_has_no_words_of_failure():
     shown = str(card(ds))
     assert "90/95 bound" in shown and "10 % quantile" in shown
     assert " life " not in shown and "B10" not in shown
+
+
+def test_each_of_several_inputs_has_its_share_and_no_check_is_lost(shipped):
+    base = card(shipped).card
+    cause = named(base, "a", "b", "c")
+    indices = (Estimate(0.28), Estimate(0.11), Estimate(0.11))
+    cause = cause._replace(contribution=replace(cause.contribution, indices=indices))
+    checks = (
+        "too few rods: the share that fail within 24 hours is uncertain by ±2.5 percentage points",
+        "89.4 % have numerical errors above 5 % (bound then 3.02 days)",
+    )
+    text = re.sub(r"\s+", " ", " ".join(shown_with(base, causes=(cause,), checks=checks)))
+    assert "28 + 11 + 11 %" in text and "bound then 3.02 days" in text

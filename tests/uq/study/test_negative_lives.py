@@ -68,3 +68,11 @@ def wear():
         "design": {"method": "monte-carlo", "samples": 20},
         "uncertain": {"rate": rate},
     }
+
+
+def test_an_angle_is_not_compared_with_more_than_half_a_turn():
+    tables = wear() | {"analysis": {"thresholds": {"disphasing_angle": 12}}}
+    tables["study"] = {"name": "screen", "model": "vibrator"}
+    tables["uncertain"] = {"rated_torque_1": {"distribution": "normal", "mean": 50.0, "sd": 1.0}}
+    with pytest.raises(InputError, match="more than half a turn .* write '12 degrees'"):
+        study_of(tables)

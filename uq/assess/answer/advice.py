@@ -129,7 +129,8 @@ def _measure(findings: Findings, answer: Answer) -> Iterator[Advice]:
         yield Advice(
             "source",
             f"State in 'source' how {called_together(unstated)}"
-            f" {'is' if is_single else 'are'} known (given, inferred, fitted, assumed or chosen):"
+            f" {'is' if is_single else 'are'} known"
+            " (given, measured, inferred, fitted, assumed or chosen):"
             f" {'it matters' if is_single else 'they matter'} most{to_what}.",
             unstated,
         )

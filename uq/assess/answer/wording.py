@@ -26,7 +26,7 @@ ASSUMED = "assumed"
 CHOSEN = "chosen"
 """Label of a range of designs: there is nothing to measure and no tolerance."""
 
-_WORDS = f"(given|inferred|fitted|{ASSUMED}|{CHOSEN})"
+_WORDS = f"(given|measured|inferred|fitted|{ASSUMED}|{CHOSEN})"
 _MARK = re.compile(rf"(?:^|[:;,] ){_WORDS}\b|(?<!\bnot )\b{_WORDS}$")
 
 
@@ -41,8 +41,8 @@ def mark(source: str) -> str:
     Returns
     -------
     str
-        ``given``, ``inferred``, ``fitted``, ``assumed`` or ``chosen``: the first that begins the
-        sentence or one of its parts, or ends it.
+        ``given``, ``measured``, ``inferred``, ``fitted``, ``assumed`` or ``chosen``: the first that
+        begins the sentence or one of its parts, or ends it.
     """
     match = _MARK.search(source)
     return (match[1] or match[2]) if match else ""
@@ -309,7 +309,7 @@ def assumptions(result: Result) -> dict[str, Fact]:
             laws,
         ),
         "laws_without_quality": (
-            "Laws whose source does not say given, inferred, fitted, assumed or chosen",
+            "Laws whose source does not say given, measured, inferred, fitted, assumed or chosen",
             [name for name in unstated if _states_source(result, name)],
             laws,
         ),

@@ -107,7 +107,8 @@ def test_assumed_laws_and_values_are_listed():
     conclusions = answer(computed(study_of(tables)))
     assert conclusions.assumptions[0] == "1 of 2 laws is assumed: rate."
     assert conclusions.assumptions[-1] == (
-        "Laws whose source does not say given, inferred, fitted, assumed or chosen: depth."
+        "Laws whose source does not say given, measured, inferred, fitted, assumed or chosen:"
+        " depth."
     )
     assert "Assumptions</summary><ul><li>1 of 2 laws" in fragment(conclusions)
 

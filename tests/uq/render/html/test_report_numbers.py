@@ -139,7 +139,9 @@ def test_what_is_assumed_stands_beside_the_number_wherever_it_is(wear, no_other_
     notebook = conclusions._repr_html_()
     assert notebook.index('answer-promise">') < notebook.index(WARNING) < notebook.index("90")
     of_page = page(Result(wear), "out.nc")
-    tile = of_page[of_page.index('class="main-tile"') :].partition('class="tile-label">Fail within')[0]
+    tile = of_page[of_page.index('class="main-tile"') :].partition(
+        'class="tile-label">Fail within'
+    )[0]
     assert WARNING in tile and "<details" not in tile
     assert of_page.count(WARNING) == 3  # tile, sentences, tables of the life
     assert dossier(Result(wear), "out.nc").count(WARNING) >= 2
