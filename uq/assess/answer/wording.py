@@ -49,7 +49,7 @@ def mark(source: str) -> str:
 
 
 def source_of(result: Result, name: str) -> str:
-    """Return the source of a law or a fixed value; of a law that has none, that of its nominal."""
+    """Return the source of a law or fixed value, or that of the nominal value if a law has none."""
     source = str(result.dataset[name].attrs.get("source", ""))
     return source if _states_source(result, name) else f"none; its nominal value: {source}"
 

@@ -119,7 +119,7 @@ def between_share(
         return NOTHING
     if dependence.labels is None:
         value, low, high = _independent(value, deviation, residual, regime.max() + 1)
-    elif dependence.samples is not None:  # that of few rows scatters otherwise
+    elif dependence.samples is not None:  # the estimates of few rows scatter
         low, high = UNKNOWN
     else:
         replicate = dependence.labels[kept]
