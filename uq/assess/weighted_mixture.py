@@ -340,6 +340,8 @@ class WeightedMixture(Sample):
         beside = float(after[np.searchsorted(values, value)]) if isfinite(value) else np.inf
         share, rows = self._near(beside)
         low, high = least(share, "high"), least(share, "low")
+        if share(float(values[0])).high >= probability:  # all rows may lie above the quantile
+            low = nan
         return Estimate(value, low, high, self._why_open(probability, low, high, rows))
 
 

@@ -8,6 +8,9 @@ from scipy import special, stats
 
 from uq.assess.comparison import compare
 from uq.assess.integrated_inputs import elements_with_laws
+from uq.assess.weighted_mixture import WeightedMixture
+from uq.contract import Output
+from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.importance_weights import effective_rows
@@ -99,6 +102,18 @@ def test_a_quantile_with_one_end_says_how_many_rows_give_the_other(probability, 
     assert few.reason == f"no {end} end: 30 effective rows, and {needed} are required"
     assert np.isnan(few.low) == (end == "lower") and np.isnan(few.high) == (end == "upper")
     assert of(needed).has_interval and not of(needed).reason
+
+
+@pytest.mark.parametrize(("probability", "end"), [(0.01, "lower"), (0.99, "upper")])
+def test_the_outermost_row_is_no_end_of_a_quantile_that_may_lie_beyond_all_rows(probability, end):
+    """All of 50 rows lie on one side of such a quantile in six of ten samples."""
+    nothing, weights = np.zeros(50, dtype=bool), np.linspace(0.9, 1.1, 50)
+    values = np.linspace(1.0, 2.0, 50)
+    element = Element("y", "y", Output("", "y"), {}, values, nothing, nothing, None, weights)
+    quantile = WeightedMixture(element).quantile(probability)
+    ends = {"lower": quantile.low, "upper": quantile.high}
+    assert np.isnan(ends.pop(end)) and np.isfinite([*ends.values()]).all()
+    assert quantile.reason.startswith(f"no {end} end: ")
 
 
 def test_samples_of_several_rows_count_once():
