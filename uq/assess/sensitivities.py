@@ -238,7 +238,7 @@ def indices_of_target(
         method.refuse_few_groups(asked)  # in them even a continuous output may have two values
         # Rows in which the event happens have no other side.
         few = () if method.conditional else few_hits(result, target, bool(method.intervals))
-        indices = method.indices(asked)
+        indices = method.indices(asked).with_possible_ends
     except RefusedError as refusal:
         factor = refusal.rows_factor
         return TargetIndices(target.name, *counts, refused=str(refusal), rows_factor=factor)

@@ -1,7 +1,7 @@
 """Results of a sensitivity method: kinds of indices, with an estimate for every input."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite, nan
 from typing import Literal
 
@@ -107,6 +107,26 @@ class Indices:
     half_products: Mapping[tuple[str, str], float] = field(default_factory=dict)
     rows_factors: Mapping[str, float] = field(default_factory=dict)
     unexplained: Estimate = NOTHING
+
+    @property
+    def with_possible_ends(self) -> "Indices":
+        """The indices, with intervals of shares of the variance that reach from 0 to 1.
+
+        An index near 0 may be estimated significantly below 0, which no share can be: its interval
+        ends at 0, since the share of an input without effect must be in it.
+        """
+        values = {
+            kind: {label: _possible(index) for label, index in indices.items()}
+            if kind.unit == "variance"
+            else indices
+            for kind, indices in self.values.items()
+        }
+        return replace(self, values=values, unexplained=_possible(self.unexplained))
+
+
+def _possible(share: Estimate) -> Estimate:
+    """Return a share with an interval that contains a number from 0 to 1."""
+    return replace(share, low=min(share.low, 1.0), high=max(share.high, 0.0))
 
 
 BY_CORRELATION = "by correlation alone"

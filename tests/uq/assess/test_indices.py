@@ -101,3 +101,13 @@ def test_all_failed_is_refused_everywhere():
             assert "refused" in sensitivity_result["outputs"]["y"]
             assert sensitivity_result["rows_used"] == 0
             assert np.isnan(uq.sensitivity(ds, method).get("S1", np.nan)).all()
+
+
+def test_the_interval_of_a_share_holds_what_a_share_can_be():
+    """One in forty or fewer inputs without effect has an index significantly below 0."""
+    rng, ds, highs = np.random.default_rng(0), linear(samples=400), []
+    for _ in range(60):
+        event = with_output(ds, "event", (rng.random(400) < 0.1) * 1.0)
+        of_inputs = sensitivities(event, "first-order", "event")["outputs"]["event"]["S1"]
+        highs += [index["high"] for index in of_inputs.values()]
+    assert min(highs) == 0.0

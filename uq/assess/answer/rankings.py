@@ -40,6 +40,12 @@ MOST_TIED = 3
 LEAST = 0.01
 """A smaller index is not listed."""
 
+MOSTLY = 0.5
+"""If single inputs certainly leave more unexplained, indices S1 that are alike order no inputs."""
+
+BY_DEPENDENCE = "hsic-target"
+"""Method that sees an input that moves an event from both sides."""
+
 
 @dataclass(frozen=True)
 class Ranking:
@@ -240,7 +246,14 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     share = f"share of the variance{of_form}, " if kind.unit == "variance" else ""
     by = "" if method in kind.words.lower() else f", by {method}"
     meaning = f"{share}{kind.words}{'' if share else of_form}{by}"
+    alone = unexplained(target_indices.indices) if kind == S1 and len(kinds) == 1 else NOTHING
+    interacting = None
+    if alone.low > MOSTLY:
+        reason, is_flat = _left_to_interactions(findings, name, measured[0], alone)
+        interacting = Ranking(name, method, kind.key, meaning, (), reason, is_flat=is_flat)
     if not measured[0].counts:
+        if interacting is not None:
+            return interacting
         reason, factor, is_flat = _unsettled(measured[0], kind, split_name(name)[0] == "P")
         needed = target_indices.indices.rows_factors.get(measured[0].name, 1.0)
         if needed > 1:
@@ -252,6 +265,8 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
     ]
     groups = list(groups_of(findings.result, weighed))
     if len({twin_of(member.name) for member in groups[0]}) > MOST_TIED:
+        if interacting is not None:
+            return interacting
         names = choices((called(member.name) for member in groups[0]), MOST_TIED + 1)
         first, second = groups[0][0], groups[0][MOST_TIED]
         apart = max(first.index.value - second.index.value, GOAL * _scale(first, kind) / 2)
@@ -348,6 +363,21 @@ def _unsettled(first: Measured, kind: IndexKind, of_event: bool) -> tuple[str, f
         return f"{which}: {text}{interval}", (first.half / goal) ** 2, False
     largest = f"the largest {kind.key} is {first.index.value:z.2f} ({called(first.name)})"
     return f"no single input contributes measurably: {largest}", nan, True
+
+
+def _left_to_interactions(
+    findings: Findings, name: str, first: Measured, alone: Estimate
+) -> tuple[str, bool]:
+    """Return a clause: single inputs leave most unexplained; and whether that denies a leader.
+
+    Of an event it does not: an input may raise its probability at either end of its law.
+    """
+    text = f"no single input explains much alone: S1 is at most {first.index.value:.2f}"
+    remedy, of_event = "a 'saltelli' design shows whether inputs interact", name.startswith("P(")
+    if of_event and BY_DEPENDENCE in fed_by(findings.result.design):
+        remedy = f"method {BY_DEPENDENCE} shows which inputs matter"
+    clause = f"{text}, and single inputs leave {whole_percent(alone)} unexplained; {remedy}"
+    return clause, first.index.value < SMALL and not of_event
 
 
 def _alike(names: str, first: Measured, kind: IndexKind, is_flat: bool) -> str:

@@ -14,7 +14,10 @@ from computed import (
 
 from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import AverageEffect
+from uq.assess.sensitivities import sensitivities
+from uq.indices.hsic import HSIC
 from uq.result.nesting import first_samples
+from uq.result.result import Result
 from uq.stats.estimate import Estimate
 
 
@@ -79,3 +82,23 @@ def test_what_decides_that_an_angle_is_too_large_is_that_of_its_magnitude():
     assert event.decided_by.startswith(
         "Main driver: x4. Over x4, the share ranges from 0 % below 0."
     )
+
+
+def test_an_angle_beyond_a_limit_on_either_side_is_not_ranked_by_what_single_inputs_explain():
+    """Each of four inputs raises it on one side and lowers it on the other: S1 sees neither."""
+    ds = linear(samples=1000)
+    signed = sum(ds[f"x{i}"].values - 0.5 for i in range(1, 5))
+    ds = with_output(ds, "turn", 0.3 * signed, "angle")
+    ds["turn"].attrs["units"] = "rad"
+    ds = asking(ds, outputs=["turn"], thresholds={"turn": 0.3})
+    (event,) = answer(ds).lead.events
+    assert event.ranking.leader is None and np.isnan(event.ranking.rows_factor)
+    _, left, low, high = numbers(
+        "No single input explains much alone: S1 is at most #, and single inputs leave"
+        r" # % \(# to # %\) unexplained; method hsic-target shows which inputs matter.",
+        event.decided_by,
+    )
+    assert 50 < low < left < high
+    by_kernel = sensitivities(Result(ds), "hsic-target", event.name).targets[event.name]
+    hsic = by_kernel.indices.values[HSIC]
+    assert min(index.value for index in hsic.values()) > by_kernel.indices.nulls[HSIC].limit
