@@ -19,6 +19,7 @@ FUNCTIONS = {
         lambda x: 2.0 * (x[:, 0] > PLACE) + 3.0 * (x[:, 1] > OTHER) + 0.3 * x[:, 2],
         2 * (1 - PLACE) + 3 * (1 - OTHER) + 0.15,
     ),
+    "a slab": (lambda x: 6.0 * (np.abs(x[:, 0] - 0.337) < 0.01) + _smooth(x), 6 * 0.02 + 0.4),
     "no jump": (lambda x: (1 + x[:, 0]) * (1 + 2 * x[:, 1]) * (1 + x[:, 2]), 4.5),
 }
 """Name -> function of three uniform inputs, its mean."""

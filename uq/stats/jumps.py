@@ -8,6 +8,7 @@ large.
 
 from itertools import combinations
 from math import log
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -36,6 +37,9 @@ NOISE = 2.0
 
 WIDEST = 16
 """Divisor of the number of rows: the quotient limits the number of neighbours on each side."""
+
+MOST_STRATA = 4
+"""Largest width of a slab in strata: a wider one shows as two steps."""
 
 
 class Neighbours:
@@ -158,11 +162,12 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
     Returns
     -------
     ndarray
-        Steps along inputs in the residual after polynomials of the inputs and previous steps. The
-        step that explains most comes first (orthogonal matching pursuit [1]_). A step is at most
-        the difference between the means of its neighbours on both sides, in the residual or in the
-        values, whichever is larger. The difference is the least over the number of neighbours. The
-        last entry is the largest jump that noise may hide.
+        Steps and slabs along inputs in the residual after polynomials of the inputs and previous
+        ones. The one that explains most comes first (orthogonal matching pursuit [1]_). A step is
+        at most the difference between the means of its neighbours on both sides, in the residual or
+        in the values, whichever is larger. The difference is the least over the number of
+        neighbours. A slab, a few strata wide, has a jump on each side, which together count as one
+        that is larger by the root of two. The last entry is the largest jump that noise may hide.
 
     References
     ----------
@@ -174,33 +179,79 @@ def jumps(values: Floats, neighbours: Neighbours) -> Floats:
     residual = neighbours.without_smooth(values)
     n = len(residual)
     sizes: list[float] = []
-    steps: list[Floats] = []
+    parts: list[Floats] = []
     rounding = 1e-12 * float(np.abs(values).max(initial=0.0))
     while len(neighbours.order) and (noise := float(residual.std())) > rounding:
-        sums = np.cumsum(residual[neighbours.order][:, ::-1], axis=1)[:, ::-1]
-        explained = np.abs(sums) / neighbours.norms
-        which, place = divmod(int(explained.argmax()), n)
-        error = noise / float(neighbours.norms[place])
-        if explained[which, place] < SURE * noise or len(sizes) == MOST_JUMPS:
-            sizes.append(NOISE * error)
+        step, slab = _largest_step(residual, neighbours), _largest_slab(residual, neighbours)
+        first = max(step, slab, key=lambda part: part.explained)
+        if first.explained < SURE * noise or len(sizes) == MOST_JUMPS:
+            sizes.append(NOISE * noise / float(neighbours.norms[step.start]))
             break
-        size = float(explained[which, place] / neighbours.norms[place])
-        # Near an end polynomials follow a step, so that little of it remains in the residual.
-        heights = (
-            _step(response[neighbours.order[which]], place, neighbours, noise)
-            for response in (residual, values)
-        )
-        sizes.append(min(size, max(heights)))
-        behind = np.zeros(n)
-        behind[neighbours.order[which, place:]] = 1.0
-        step = neighbours.without_smooth(behind)
-        for other in steps:
-            step -= other * (other @ step)
-        if step @ step < 1e-9 * n:
+        ordered = neighbours.order[first.which]
+        if first is slab:
+            sizes.append(2**0.5 * _height(residual[ordered], slab))
+        else:
+            # Near an end polynomials follow a step, so that little of it remains in the residual.
+            heights = (
+                _step(response[ordered], step.start, neighbours, noise)
+                for response in (residual, values)
+            )
+            size = step.explained / float(neighbours.norms[step.start])
+            sizes.append(min(size, max(heights)))
+        inside = np.zeros(n)
+        inside[ordered[first.start : first.stop]] = 1.0
+        part = neighbours.without_smooth(inside)
+        for other in parts:
+            part -= other * (other @ part)
+        if part @ part < 1e-9 * n:
             break
-        steps.append(step / np.sqrt(step @ step))
-        residual = residual - steps[-1] * (steps[-1] @ residual)
+        parts.append(part / np.sqrt(part @ part))
+        residual = residual - parts[-1] * (parts[-1] @ residual)
     return np.array(sizes)
+
+
+class _Part(NamedTuple):
+    """Rows along an input, from `start` to `stop`, and how much of the residual they explain."""
+
+    explained: float
+    which: int
+    start: int
+    stop: int
+
+
+def _largest_step(residual: Floats, neighbours: Neighbours) -> _Part:
+    """Return the step that explains most: from a place to the end of an input."""
+    sums = np.cumsum(residual[neighbours.order][:, ::-1], axis=1)[:, ::-1]
+    explained = np.abs(sums) / neighbours.norms
+    which, place = divmod(int(explained.argmax()), len(residual))
+    return _Part(float(explained[which, place]), which, place, len(residual))
+
+
+def _largest_slab(residual: Floats, neighbours: Neighbours) -> _Part:
+    """Return the slab that explains most: a few strata that stand out from both sides."""
+    n, best = len(residual), _Part(0.0, 0, 0, 0)
+    sums = np.cumsum(residual[neighbours.order], axis=1)
+    sums = np.hstack([np.zeros((len(sums), 1)), sums])
+    width = max(neighbours.replicates, 2)
+    while width <= min(n // WIDEST, MOST_STRATA * neighbours.replicates):
+        inside = sums[:, width:] - sums[:, :-width]
+        before, at, after = inside[:, : -2 * width], inside[:, width:-width], inside[:, 2 * width :]
+        outside = np.where(at > 0, np.maximum(before, after), np.minimum(before, after))
+        stands_out = np.where((at > 0) == (at > outside), np.abs(at - outside), 0.0)
+        which, place = divmod(int(stands_out.argmax()), stands_out.shape[1])
+        explained = float(stands_out[which, place]) / (2 * width) ** 0.5  # of a difference
+        if explained > best.explained:
+            best = _Part(explained, which, place + width, place + 2 * width)
+        width *= 2
+    return best
+
+
+def _height(ordered: Floats, slab: _Part) -> float:
+    """Return the difference between the mean in a slab and the nearer mean beside it."""
+    width = slab.stop - slab.start
+    inside = ordered[slab.start : slab.stop].mean()
+    beside = (ordered[slab.start - width : slab.start], ordered[slab.stop : slab.stop + width])
+    return float(min(abs(inside - side.mean()) for side in beside))
 
 
 def _step(ordered: Floats, place: int, neighbours: Neighbours, noise: float) -> float:

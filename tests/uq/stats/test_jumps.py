@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from computed import linear, summarised
 from scipy.special import ndtri
+from scipy.stats import qmc
 
 from uq.sampling.unit_cube import sobol
 from uq.stats.dependent_rows import Dependence
 from uq.stats.jumps import jumps
+from uq.stats.moments import moments
 
 
 @pytest.mark.parametrize(
@@ -37,3 +39,19 @@ def test_a_jump_near_an_end_is_not_taken_for_a_polynomial():
     y = 4.0 * (u[:, 0] > place) + 0.2 * ndtri(u[:, 1])
     marked = Dependence(np.tile(np.arange(8), 64), u)
     assert jumps(y, marked.neighbours)[0] > 3.0
+
+
+def test_a_slab_that_each_replicate_meets_once_is_found():
+    """Of 1.28 strata: in 7 % of designs all replicates have one row in it, and show no scatter."""
+    held = []
+    for seed in range(120):
+        u = qmc.LatinHypercube(3, rng=seed).random(64)
+        u = np.concatenate(
+            [u, *(qmc.LatinHypercube(3, rng=[seed, i]).random(64) for i in range(7))]
+        )
+        inside = np.abs(u[:, 0] - 0.337) < 0.01
+        if (inside.reshape(8, 64).sum(axis=1) == 1).all():
+            of = Dependence(np.repeat(np.arange(8), 64), u)
+            ends = moments(6.0 * inside + 0.3 * u[:, 1], of).mean
+            held.append(ends.low <= 6 * 0.02 + 0.15 <= ends.high)
+    assert len(held) > 3 and all(held)
