@@ -10,6 +10,7 @@ from uq.indices.methods import METHODS, designs_for, fed_by, for_dependent_input
 from uq.plots import FIGURES
 from uq.sampling.designs import DESIGNS, PLAIN, Design
 from uq.sampling.laws import LAWS
+from uq.sampling.wear_coefficients import PAIRS
 from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyTable, Tied, Until
 
 from .markdown import table, value
@@ -51,6 +52,12 @@ def laws() -> str:
 def _own(law: type[BaseModel]) -> list[str]:
     common = ("distribution", "source", "truncate", "times", "level")
     return [name for name in law.model_fields if name not in common]
+
+
+def wear_coefficients() -> str:
+    """Tabulate the published wear coefficients of the law that is named after them."""
+    lines = [(f'`"{pair}"`', f"{coefficient:.3g}") for pair, coefficient in PAIRS.items()]
+    return table(("`pair`: worn body/counter-body", "coefficient [m²/N]"), lines)
 
 
 def designs() -> str:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy import stats
 
 from uq.sampling.listed_values import Steps
+from uq.sampling.wear_coefficients import PAIRS
 
 
 def _lognormal(law):
@@ -26,6 +27,7 @@ COUNTERPARTS = {
         scale=law.sd,
     ),
     "lognormal": _lognormal,
+    "wear-coefficient": lambda law: stats.lognorm(s=law.sigma, scale=law.share * PAIRS[law.pair]),
 }
 
 

@@ -40,6 +40,8 @@ class Law(BaseModel):
     """Alternative sets of arguments; exactly one set is given."""
     pure: ClassVar[tuple[str, ...]] = ()
     """Arguments without a unit."""
+    unit: ClassVar[str] = ""
+    """The only unit of a parameter that the law suits; "" for any."""
 
     source: str = Field("", description="where the numbers come from; shown in every result")
     truncate: Annotated[tuple[float, float] | None, LIST] = Field(

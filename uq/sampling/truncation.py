@@ -226,6 +226,9 @@ def law_problem(law: Law, parameter: Parameter) -> InputFault | None:
     InputFault or None
         Its path is the invalid argument, or empty.
     """
+    if law.unit and law.unit != parameter.unit and law.times is None:
+        of = f"of a parameter in {law.unit}, not in {parameter.unit}"
+        return InputFault(("distribution",), f"is {of}", vars(law)["distribution"])
     low, high = parameter.bounds
     bounds = f"the parameter's bounds, {bounds_of(parameter)}"
     cut = law.truncate is not None or isinstance(law, TruncatedNormal)

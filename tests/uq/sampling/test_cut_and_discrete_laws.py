@@ -86,3 +86,12 @@ def test_values_outside_the_bounds_are_refused_with_a_remedy():
     assert "too extreme" in refusal(tables({"x1": far}))
     both = refusal(tables({"x1": BELL | {"truncate": [2.0, 1.0]}}))
     assert both.startswith("[uncertain.x1]: truncate must have lower < upper: [2.0, 1.0]")
+
+
+def test_a_published_wear_coefficient_suits_no_other_parameter():
+    entry = {"distribution": "wear-coefficient", "pair": "inconel-690/steel-405"}
+    assert refusal(tables({"x1": entry})) == (
+        '[uncertain.x1] distribution = "wear-coefficient": is of a parameter in m2 N-1, not in 1'
+    )
+    mistaken = entry | {"pair": "inconel-609/steel-405"}
+    assert "did you mean 'inconel-690/steel-405'?" in refusal(tables({"x1": mistaken}))

@@ -48,6 +48,11 @@ MOMENTS = {
     "discrete-choice": ({"values": [1.0, 4.0], "weights": [2.0, 1.0]}, 2.0, sqrt(2.0)),
     "integer-range": ({"lower": 1, "upper": 6}, 3.5, sqrt(35 / 12)),
     "empirical": ({"values": [1.0, 2.0, 2.0, 7.0]}, 3.0, sqrt((4 + 1 + 1 + 16) / 4)),
+    "wear-coefficient": (
+        {"pair": "inconel-690/steel-405", "sigma": 0.5, "share": 0.2},
+        0.2 * 4.1e-16 * exp(0.125),
+        0.2 * 4.1e-16 * exp(0.125) * sqrt(exp(0.25) - 1),
+    ),
     # Two boxes: [0, 1] with a third, [1, 3] with two thirds of the probability.
     "histogram": (
         {"edges": [0.0, 1.0, 3.0], "counts": [1, 2]},
