@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from enum import IntEnum
+from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 import numpy as np
@@ -20,6 +21,12 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 Kind = Literal["value", "lifetime", "angle", "category"]
+
+Scales = Callable[[Any, Mapping[str, float]], Mapping[str, float]]
+"""``scales(settings, constants)`` -> scaling exponent of each parameter; see `Output`."""
+
+NO_CONSTANTS: Mapping[str, float] = MappingProxyType({})
+"""No parameter is known not to vary."""
 
 LARGEST_VALUE = 1e300
 """Largest magnitude of an output; larger values count as missing, since sums could overflow."""
@@ -108,11 +115,13 @@ class Output:
     never_known_at_once : bool
         For lifetimes only: whether a life that never ends is recognised before any row is
         censored, so that every censored row would end later.
-    scales : dict of str to float
+    scales : dict of str to float, or callable
         For lifetimes only: scaling exponent of each parameter. Within the bounds of these
         parameters the life is exactly proportional to the product of their powers, except for
         rounding, for any values of all other parameters. A life that never ends does so for any
-        value of these parameters.
+        value of these parameters. If the exponents depend on the study: ``scales(settings,
+        constants)``, where `constants` has the value of each parameter that is known not to vary;
+        they must hold for any values of the others.
     """
 
     unit: str
@@ -125,7 +134,18 @@ class Output:
     accuracy: str = ""
     success: str = ""
     never_known_at_once: bool = True
-    scales: Mapping[str, float] = field(default_factory=dict, hash=False)
+    scales: Mapping[str, float] | Scales = field(default_factory=dict, hash=False)
+
+    @property
+    def exponents(self) -> Mapping[str, float]:
+        """Its `scales`, which `given` has resolved; empty if they still depend on a study."""
+        return {} if callable(self.scales) else self.scales
+
+    def given(self, settings: Any, constants: Mapping[str, float] = NO_CONSTANTS) -> "Output":
+        """Return the output with the `scales` that hold under settings and constants."""
+        if not callable(self.scales):
+            return self
+        return replace(self, scales=self.scales(settings, constants))
 
     @property
     def is_lifetime(self) -> bool:
@@ -346,18 +366,25 @@ class Model:
             self, outputs={output: self.outputs[output]}, batch=self.cheap[output], cheap={}
         )
 
-    def given(self, settings: Any) -> "Model":
+    def given(self, settings: Any, constants: Mapping[str, float] = NO_CONSTANTS) -> "Model":
         """Return the model with only the outputs that it computes with these settings.
 
-        Outputs along a dimension without coordinates are excluded.
+        Outputs along a dimension without coordinates are excluded; scaling exponents that depend on
+        the settings are resolved.
+
+        Parameters
+        ----------
+        settings : object
+        constants : dict of str to float, optional
+            Values of the parameters that do not vary.
         """
         axes = self.coordinates(settings)
         some = {
-            name: output
+            name: output.given(settings, constants)
             for name, output in self.outputs.items()
             if all(len(axes[dim]) for dim in output.dims)
         }
-        return self if len(some) == len(self.outputs) else replace(self, outputs=some)
+        return self if some == self.outputs else replace(self, outputs=some)
 
     def choices_of(self, settings: Any) -> dict[str, Any]:
         """Return the settings by name, except empty settings that are `Setting.optional`."""

@@ -189,7 +189,7 @@ def by_level(result: Result, output: str | None = None, *, plain: bool = False) 
 def _scales(rows: Result, target: IndexTarget) -> Scales:
     """Return the inputs integrated exactly: for logarithms of lives, those that only scale them."""
     element = target.element
-    if element is None or target.event or target.refused or not element.declared.scales:
+    if element is None or target.event or target.refused or not element.declared.exponents:
         return Scales({})
     scales = scales_by_level(rows, element)
     if split_name(target.name)[0] == "log" or not scales.inputs:

@@ -212,7 +212,7 @@ def units_of(rows: Result, element: Element, *, plain: bool = False) -> Units:
     place, levels = rows.nesting, rows.levels
     inner = shared = None
     inputs, why = inputs_of(rows), ""
-    scales = element.declared.scales and not plain
+    scales = element.declared.exponents and not plain
     if scales and element.censored.any():
         why = why_not_integrated(rows, element)
     elif scales:

@@ -50,7 +50,7 @@ def integrated(
     kept : dict of str to str
         Input that scales the lives -> why it is not integrated.
     """
-    exponents, kept, _ = _exponents(inputs, output.scales)
+    exponents, kept, _ = _exponents(inputs, output.exponents)
     if levels is not None:
         level = {name: law.level for name, law in inputs.laws.items()}
         exponents = {name: e for name, e in exponents.items() if level[name] in levels}
@@ -86,7 +86,7 @@ def integrated(
 
 def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
     """Return the exponents of the inputs that are integrated while their laws stay positive."""
-    exponents, kept, _ = _exponents(inputs, output.scales)
+    exponents, kept, _ = _exponents(inputs, output.exponents)
     return {
         name: exponent
         for name, exponent in exponents.items()
@@ -127,7 +127,7 @@ def _exponents(
 
 def without_effect(inputs: Inputs, output: Output) -> tuple[str, ...]:
     """Return the inputs that scale the lives of an output to powers that cancel."""
-    return _exponents(inputs, output.scales)[2]
+    return _exponents(inputs, output.exponents)[2]
 
 
 def _problem(name: str, inputs: Inputs) -> str:
@@ -221,7 +221,7 @@ def elements_with_laws(
     """
     inputs = None
     for element in rows.elements(outputs):
-        if not plain and element.declared.scales and not element.censored.any():
+        if not plain and element.declared.exponents and not element.censored.any():
             inputs = inputs or inputs_of(rows)
             learnt = posterior_scale(rows, inputs, scalers(inputs, element.declared))
             law = learnt or integrated(rows, element.declared, inputs)[0]
@@ -232,7 +232,7 @@ def elements_with_laws(
 def why_not_integrated(rows: Result, element: Element) -> str:
     """Return a sentence on inputs that scale lives but are not integrated, or ""."""
     inputs = inputs_of(rows)
-    exponents, _, _ = _exponents(inputs, element.declared.scales)
+    exponents, _, _ = _exponents(inputs, element.declared.exponents)
     if not exponents:
         return ""
     if element.censored.any():
@@ -294,7 +294,7 @@ def scales_by_level(rows: Result, element: Element) -> Scales:
     element : Element
         A life of these rows, none censored.
     """
-    if not element.declared.scales:
+    if not element.declared.exponents:
         return Scales({})
     inputs = inputs_of(rows)
     parts = {level: integrated(rows, element.declared, inputs, {level}) for level in LEVELS}

@@ -159,7 +159,7 @@ class Weighting:
         """Yield the elements of the outputs whose weights are reliable."""
         for element in self._rows.elements(outputs):
             law = None
-            if element.declared.scales and not element.censored.any():
+            if element.declared.exponents and not element.censored.any():
                 law = integrated(self._rows, element.declared, self._new)[0]
             weights = self.integrating(law.inputs if law else ())
             if weights.refusal:

@@ -42,7 +42,10 @@ def as_json(model: Model) -> dict[str, Any]:
             name: {"default": getattr(defaults, name)} | asdict(model.setting(name))
             for name in model.setting_names
         },
-        "outputs": {name: asdict(output) for name, output in model.outputs.items()},
+        "outputs": {
+            name: asdict(output.given(defaults, model.nominal))
+            for name, output in model.outputs.items()
+        },
         "coordinates": {dim: list(values) for dim, values in model.coordinates(defaults).items()},
         "references": list(model.references),
     }

@@ -51,7 +51,7 @@ def check_scales(study: "Study", row_limit: float | None = None) -> None:
         When a life does not scale as declared.
     """
     model = study.model
-    scaled = {name: output for name, output in model.outputs.items() if output.scales}
+    scaled = {name: output for name, output in model.outputs.items() if output.exponents}
     if not scaled or not isinstance(model.batch, RowByRow):
         return
     first = row_block(study, 0, 1)
@@ -95,7 +95,7 @@ def _scaled_anew(base: Floats, study: "Study", scaled: dict[str, Output]) -> Flo
     """Return the base row and rows with changed scaling parameters, shape (4, d)."""
     rng, rows = np.random.default_rng(1), np.tile(base, (_EACH, 1))
     model = study.model
-    for name in dict.fromkeys(name for output in scaled.values() for name in output.scales):
+    for name in dict.fromkeys(name for output in scaled.values() for name in output.exponents):
         place = model.parameter_names.index(name)
         least, most = model.parameter(name).bounds
         value = base[place] if base[place] > 0 else model.nominal[name]
@@ -110,8 +110,8 @@ def _scaled_anew(base: Floats, study: "Study", scaled: dict[str, Output]) -> Flo
 
 def _faults(model: Model, name: str, output: Output, x: Floats, chunk: Chunk) -> Iterator[str]:
     """Yield deviations of a life from its declared power law."""
-    columns = [model.parameter_names.index(parameter) for parameter in output.scales]
-    factor = np.prod(x[:, columns] ** np.array(list(output.scales.values())), axis=1)
+    columns = [model.parameter_names.index(parameter) for parameter in output.exponents]
+    factor = np.prod(x[:, columns] ** np.array(list(output.exponents.values())), axis=1)
     lives = chunk.columns[name].reshape(len(x), -1)
     cut = chunk.columns[censored_name(name)].reshape(lives.shape).astype(bool)
     sound = chunk.status == Status.OK
@@ -123,7 +123,7 @@ def _faults(model: Model, name: str, output: Output, x: Floats, chunk: Chunk) ->
         wrong = _differ(lives[row], cut[row], expected, cut[first])
         if wrong.any():
             place = int(np.argmax(wrong))
-            pairs = zip(output.scales, x[row, columns], strict=True)
+            pairs = zip(output.exponents, x[row, columns], strict=True)
             at = ", ".join(f"{parameter} = {value:g}" for parameter, value in pairs)
             yield (
                 f"output '{name}' does not scale as declared: at {at} it is"

@@ -347,7 +347,7 @@ def _depths(result: Result) -> Iterator[Observable]:
             worn = WornDepths(
                 axis.values[order].astype(float), np.where(cut, np.inf, times)[:, order]
             )
-            shown = Output(str(axis.attrs["units"]), declared.meaning, scales=declared.scales)
+            shown = Output(str(axis.attrs["units"]), declared.meaning, scales=declared.exponents)
             censored = np.asarray(cut.any(axis=1))
             yield Observable(name, shown, np.empty(0), worn, censored, declared.unit)
 

@@ -298,7 +298,7 @@ class _Offered:
                 output.is_lifetime,
                 (prod(len(axes[dim]) for dim in output.dims),) * bool(output.dims),
                 output.may_be_undefined,
-                dict(output.scales),
+                dict(output.exponents),
             )
             for name, output in model.outputs.items()
         }

@@ -67,8 +67,8 @@ def output_variables(
             attrs["never_known_at_once"] = int(output.never_known_at_once)
         if output.success:
             attrs["success"] = output.success
-        if output.scales:
-            attrs["scales"] = json.dumps(dict(output.scales))
+        if output.exponents:
+            attrs["scales"] = json.dumps(dict(output.exponents))
         if output.is_category:
             attrs |= _flags(("none", *output.categories), np.int8, first=-1)
         variables[name] = (dims, columns[name], attrs)

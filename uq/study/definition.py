@@ -265,7 +265,10 @@ def study_from_text(
 
     file = StudyFile.model_validate(data)
     settings, _ = read_settings(study_model, file.settings)
-    study_model = study_model.given(settings)
+    constants = study_model.nominal | dict(file.fixed)
+    for name in entries:
+        constants.pop(name, None)
+    study_model = study_model.given(settings, constants)
     file = file.in_units({name: output.unit for name, output in study_model.outputs.items()})
     outputs = file.analysis.outputs or tuple(study_model.outputs)
     uncertain = {name: law for name, law in entries.items() if not isinstance(law, Tied)}

@@ -1,7 +1,7 @@
 """Models for the tests of the platform: one output of every kind, cheap twins, noise, sums."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -255,3 +255,24 @@ SCALED = Model(
     },
     batch=scaled_life,
 )
+
+
+def _delayed_life(x, seed, settings):
+    return {"life": x[:, 0] + x[:, 3] ** 2, "life_censored": np.zeros(len(x), bool)}, ok(len(x))
+
+
+DELAYED = replace(
+    SCALED,
+    name="delayed",
+    title="life that an input scales unless another one delays it",
+    outputs={
+        "life": Output(
+            "s",
+            "life",
+            "lifetime",
+            scales=lambda settings, constants: {"a": 1.0} if constants.get("z") == 0 else {},
+        )
+    },
+    batch=_delayed_life,
+)
+"""Life a + z^2."""

@@ -346,7 +346,7 @@ def _quantity(
 
 def assumed_scales(result: Result, element: Element) -> tuple[str, ...]:
     """Return the assumed quantities that all lives scale with, or with the reciprocal of."""
-    scales = (name for name in element.declared.scales if name in result.dataset)
+    scales = (name for name in element.declared.exponents if name in result.dataset)
     return tuple(name for name in scales if mark_of(result, name) == ASSUMED)
 
 

@@ -164,7 +164,7 @@ _KIND = replace(
 
 def integrated(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield the variance reduction factor of exact integration against plain Monte Carlo."""
-    if not element.declared.scales:
+    if not element.declared.exponents:
         return
     why = why_not_integrated(context.rows, element)
     law = element.law

@@ -1,0 +1,45 @@
+"""Whether an input only scales a life may depend on what a study fixes."""
+
+import numpy as np
+import pytest
+from computed import computed, study_of, summarised
+from scaled_studies import NORMAL, lognormal
+
+from uq.assess.what_if import what_if
+from uq.result.result import Result
+
+SCATTER = {"a": lognormal(0.5)}
+
+
+def delayed(uncertain=SCATTER, **tables):
+    analysis = {"outputs": ["life"], "thresholds": {"life": [1.0]}}
+    return study_of(
+        {
+            "study": {"name": "delayed", "model": "delayed"},
+            "design": {"method": "monte-carlo", "samples": 200, "seed": 1},
+            "uncertain": uncertain,
+            "analysis": analysis,
+            **tables,
+        },
+        "sample_models:DELAYED",
+    )
+
+
+def test_a_life_scales_where_nothing_delays_it():
+    life = summarised(computed(delayed()))["outputs"]["life"]
+    assert life["integrated"]["inputs"] == ["a"]
+    assert life["thresholds"]["1.0"]["below"]["value"] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    "study", [{"fixed": {"z": 0.5}}, {"uncertain": SCATTER | {"z": NORMAL}}], ids=["fixed", "law"]
+)
+def test_a_life_that_may_be_delayed_is_counted_row_by_row(study):
+    ds = computed(delayed(**study))
+    life = summarised(ds)["outputs"]["life"]
+    assert "integrated" not in life or not life["integrated"]["inputs"]
+    expected = np.mean(ds["life"].values < 1.0)
+    assert life["thresholds"]["1.0"]["below"]["value"] == expected
+    # Without scales, another law of a needs weights of the rows.
+    table = what_if(Result(ds), {"uncertain.a.median": 1.02})
+    assert table.attrs["effective_rows"] < 200
