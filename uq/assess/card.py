@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +10,6 @@ from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.piece_of_advice import Advice
-from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.rankings import Ranking
 from uq.assess.answer.tightening import tightened
 from uq.assess.answer.tolerance_effects import TighterTolerance
@@ -248,25 +246,9 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
     error = {} if lead is None or lead.own_error is None else lead.own_error.members
     if error.get("rows_missing_it"):
         share, accuracy = percent(error["rows_missing_it"]), 100 * error["accuracy"]
-        text = f"{share} have numerical errors above {accuracy:g} %"
-        yield text + _moved(lead, error)
+        yield f"{share} have numerical errors above {accuracy:g} %"
     if answer.regimes and not answer.regimes_first:
         yield f"{percent(answer.regimes[0].share.value)} {answer.regimes[0].predicate}"
-
-
-def _moved(lead: Quantity | None, error: Any) -> str:
-    """Return the bound if every value were wrong by its stated error; "" if that is the same."""
-    tolerance_bound = None if lead is None else lead.tolerance_bound
-    if tolerance_bound is None:
-        return ""
-    for name, bound, towards in (
-        ("lower", tolerance_bound.lower, -inf),
-        ("upper", tolerance_bound.upper, inf),
-    ):
-        if isfinite(bound) and error[name] is not None:
-            moved = tolerance_bound.unit.text(error[name], towards)
-            return f" (bound then {moved})" * (moved != tolerance_bound.unit.text(bound, towards))
-    return ""
 
 
 def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:

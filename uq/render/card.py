@@ -13,7 +13,7 @@ from uq.assess.answer.contributions import AverageEffect
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import DisplayUnit, called_together
 from uq.assess.card import STUDY, Card, LeadingInput, card_of, statistic_name
-from uq.assess.card_numbers import Headline
+from uq.assess.card_numbers import WITH_ERRORS, Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
 from uq.text.numbers import TO_THESE_DIGITS, counted, grouped, percent, percent_interval, printed
@@ -177,7 +177,7 @@ def _beside(left: str, right: str) -> str:
 def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
     wide_label, wide_value = _widths(card)
     for line in lines:
-        label, value = label_of(line, card), number_of(line)
+        label, value = _label(line, card), number_of(line)
         if isnan(line.estimate.value):
             yield Line(f"  {label:<{wide_label}}{'':<{wide_value // 4}}{value}")
             continue
@@ -194,9 +194,15 @@ def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
 
 def _widths(card: Card) -> tuple[int, int]:
     """Return the widths of labels and of values."""
-    labels = [len(label_of(line, card)) for line in card.headline]
+    labels = [len(_label(line, card)) for line in card.headline]
     values = [len(number_of(line)) for line in card.headline if not isnan(line.estimate.value)]
     return max([17, *labels]) + 2, max([10, *values])
+
+
+def _label(line: Headline, card: Card) -> str:
+    """Return the label of a number in a column; of a bound with errors, the note says of what."""
+    label = label_of(line, card)
+    return "with errors" if label.endswith(WITH_ERRORS) else label
 
 
 def label_of(line: Headline, card: Card) -> str:
