@@ -163,7 +163,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         DESIGNS[result.design_name].layout is not PLAIN,
         no_causes,
         tuple(_checks(findings, answer, no_causes)),
-        tuple(_next(result, answer.advice)),
+        tuple(_next(result, answer)),
     )
 
 
@@ -240,9 +240,12 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
         yield f"sample size cannot be judged: {enough.unknown}"
     elif enough.question:
         clause = enough.question[0][0]
-        yield f"too few {plural}" + f": {clause}" * (clause != no_causes)
+        clause = clause.partition(":")[0] if clause == no_causes else clause
+        yield f"not settled: {clause}" if enough.errors else f"too few {plural}: {clause}"
     else:
         yield f"enough {plural}" + " but for the failures" * bool(answer.failed)
+    if enough.errors is not None:
+        yield f"numerical error exceeds sampling error (of the {enough.errors.estimate})"
     error = {} if lead is None or lead.own_error is None else lead.own_error.members
     if error.get("rows_missing_it"):
         share, accuracy = percent(error["rows_missing_it"]), 100 * error["accuracy"]
@@ -251,8 +254,9 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
         yield f"{percent(answer.regimes[0].share.value)} {answer.regimes[0].predicate}"
 
 
-def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
+def _next(result: Result, answer: Answer) -> Iterator[str]:
     """Yield each piece of advice in a few words, the most urgent first, more rows second."""
+    advice = answer.advice
     first, others = [*advice[:1]], [*advice[1:]]
     for entry in first + sorted(others, key=lambda entry: entry.rule != "rows"):
         words = called_together(entry.inputs) if entry.inputs else ""
@@ -272,7 +276,8 @@ def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
                 again = f"uq rerun {result.file} --failed{result.model_option}"
                 yield f"fix the failed rows, then {again}"
             case "finer":
-                yield "compute more accurate rows, not more"
+                finer = answer.enough.setting or "finer settings"
+                yield f"compute more accurate {result.row_name[1]}, not more: {finer}"
             case "keep":
                 place = entry.place.replace("between ", "in ").replace(" and ", " to ")
                 yield f"keep {words} {place}"

@@ -244,3 +244,21 @@ def test_a_quantile_in_place_of_a_bound_comes_with_its_numerical_errors():
     quantile, with_errors = card(ds).card.headline[:2]
     assert with_errors.label == "5 % quantile with numerical errors"
     assert with_errors.estimate.value == pytest.approx(quantile.estimate.value - 0.2, rel=1e-9)
+
+
+def test_too_few_rows_are_too_few_for_a_result_even_if_the_causes_state_the_reason():
+    shown = card(asking(linear(samples=100), outputs=["y"])).card
+    assert shown.no_causes.startswith("the ranking of the inputs is not settled: ")
+    assert "too few runs: the ranking of the inputs is not settled" in shown.checks
+
+
+def test_more_accurate_rows_are_advised_with_the_setting_that_makes_them():
+    ds = with_numerical_errors(0.3)
+    ds["life"].attrs |= {"accuracy": 0.05, "accuracy_setting": "accuracy"}
+    shown = card(ds).card
+    (step,) = (step for step in shown.next if "accurate" in step)
+    value = re.fullmatch(r"compute more accurate runs, not more: set accuracy = (0\.0\d+)", step)
+    assert float(value[1]) <= 0.025
+    assert not any("too few" in check for check in shown.checks)
+    del ds["life"].attrs["accuracy_setting"]
+    assert any(step.endswith("not more: finer settings") for step in card(ds).card.next)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from math import inf, isfinite, isnan
+from math import floor, inf, isfinite, isnan, log10
 from typing import Any
 
 from uq.assess.answer.events import Event
@@ -131,6 +131,8 @@ class SampleSizeAssessment:
         Errors of the subject, if the numerical error exceeds the sampling error.
     unit : DisplayUnit
         Unit of these errors.
+    setting : str
+        The setting and its value that reduce the numerical error to the sampling error, or "".
     again : Fact
         Prediction interval for another seed.
     of_share : bool
@@ -144,6 +146,7 @@ class SampleSizeAssessment:
     besides: tuple[Shortfall, ...] = ()
     errors: Errors | None = None
     unit: DisplayUnit = field(default_factory=DisplayUnit)
+    setting: str = ""
     again: Fact = field(default_factory=lambda: Fact({}))
     of_share: bool = False
     others: tuple[str, ...] = ()
@@ -191,8 +194,9 @@ class SampleSizeAssessment:
         numerical, sampling = (
             self.unit.text(error) for error in (self.errors.numerical, self.errors.sampling)
         )
+        how = self.setting or "finer settings or longer averages"
         return (
-            "Reduce numerical error (finer settings or longer averages) before adding rows: it may"
+            f"Reduce numerical error ({how}) before adding rows: it may"
             f" change the {self.errors.estimate} by {numerical}, sampling by {sampling}."
         )
 
@@ -236,6 +240,7 @@ def enough_of(
         least_settled_first(besides),
         errors,
         about[0].range.unit if about and about[0].range is not None else DisplayUnit(),
+        _finer_setting(result, about[0], errors) if errors is not None else "",
         _prediction(about, regimes),
         bool(regimes) or any(quantity.first is not None for quantity in about),
     )
@@ -266,6 +271,20 @@ def _errors(findings: Findings, quantity: Quantity) -> Errors | None:
     (element,) = findings.rows.named_elements(quantity.name)
     errors = compared(findings.rows, element, findings.summary.outputs[quantity.name])
     return errors if errors.warning else None
+
+
+def _finer_setting(result: Result, quantity: Quantity, errors: Errors) -> str:
+    """Return the setting of the accuracy with a value that equals the sampling error; "" if none.
+
+    At most half the present value, since errors are rarely as large as the accuracy allows.
+    """
+    setting = result.outputs[quantity.output].accuracy
+    asked = None if quantity.own_error is None else quantity.own_error.members["accuracy"]
+    if not setting or not asked or not isfinite(errors.sampling):
+        return ""
+    finer = asked * min(errors.sampling / errors.numerical, 0.5)
+    digit = 10.0 ** floor(log10(finer))
+    return f"set {setting} = {floor(finer / digit) * digit:.1g}"
 
 
 def settled(clause: str, factor: float, result: Result) -> str:
