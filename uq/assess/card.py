@@ -9,14 +9,15 @@ import numpy as np
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution
-from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.rankings import Ranking
+from uq.assess.answer.sufficiency import rounded_size
 from uq.assess.answer.tightening import tightened
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import (
     ASSUMED,
     CHOSEN,
     called_together,
+    cause_warning,
     mark_of,
     scale_warning,
 )
@@ -27,7 +28,7 @@ from uq.contract import Status
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PLAIN
 from uq.stats import estimate_json
-from uq.text.numbers import capitalized, counted, percent, rows_in_words
+from uq.text.numbers import capitalized, counted, grouped, percent, rows_in_words
 from uq.text.units import readable
 
 MOST_CAUSES = 4
@@ -80,6 +81,8 @@ class Card:
         Assumed inputs to which every life is proportional.
     assumptions : str
         How many laws are assumed, and which of the causes; "" for none.
+    assumed_causes : tuple of str
+        Assumed inputs among those that contribute most.
     causes : tuple of LeadingInput
     index : str
         Key of the index of the causes: ``S1``.
@@ -105,6 +108,7 @@ class Card:
     headline: tuple[Headline, ...] = ()
     assumed: tuple[str, ...] = ()
     assumptions: str = ""
+    assumed_causes: tuple[str, ...] = ()
     causes: tuple[LeadingInput, ...] = ()
     index: str = ""
     share_of: str = ""
@@ -115,8 +119,9 @@ class Card:
 
     @property
     def warning(self) -> str:
-        """Clause on assumed inputs that set the scale of every life; "" without any."""
-        return scale_warning(self.assumed)
+        """Clause on assumed inputs that set the scale of a life or contribute most, or ""."""
+        causes = () if self.besides else self.assumed_causes  # no single input decides a regime
+        return scale_warning(self.assumed) or cause_warning(causes)
 
     @property
     def json(self) -> dict[str, Any]:
@@ -141,6 +146,8 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
     attrs, lead = result.dataset.attrs, answer.lead
     ranking = _ranking(answer)
     causes = tuple(_causes(result, answer, ranking))
+    leading = [name for cause in causes[:1] for name in cause.contribution.sure]
+    assumed_causes = tuple(name for name in leading if mark_of(result, name) == ASSUMED)
     no_causes = ""
     if ranking is not None and not causes:
         no_causes = ranking.reason or "no input contributes measurably"
@@ -156,7 +163,8 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         result.row_name,
         tuple(headlines(findings, answer)),
         () if lead is None else lead.scaled_by,
-        _assumptions(result, causes),
+        _assumptions(result, assumed_causes),
+        assumed_causes,
         causes,
         "" if ranking is None else ranking.kind,
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
@@ -183,13 +191,12 @@ def _share_of(ranking: Ranking, is_life: bool) -> str:
     return "variance"
 
 
-def _assumptions(result: Result, causes: Sequence[LeadingInput]) -> str:
+def _assumptions(result: Result, assumed_causes: Sequence[str]) -> str:
     laws = [name for name in result.study.uncertain if name in result.dataset.variables]
     assumed = [name for name in laws if mark_of(result, name) == ASSUMED]
     if not assumed:
         return ""
-    leading = [name for cause in causes[:1] for name in cause.contribution.sure]
-    among = called_together([name for name in leading if name in assumed])
+    among = called_together(assumed_causes)
     text = f"{len(assumed)} of {counted(len(laws), 'law')} assumed"
     return f"{text}, {among} among them" if among and 1 < len(assumed) < len(laws) else text
 
@@ -266,23 +273,39 @@ def _next(result: Result, answer: Answer) -> Iterator[str]:
             case "tighten" if entry.tightened is not None and not entry.tightened.reason:
                 yield f"tighten {words}"
             case "chance":
-                yield "expect little of tolerances: chance decides"
+                yield f"expect little of tolerances: {_chance(answer)}"
             case "source":
                 verb = "is" if len(entry.inputs) == 1 else "are"
                 yield f"state in 'source' how {words} {verb} known"
             case "rows" if entry.rows is not None:
-                yield f"{STUDY} about {rows_in_words(entry.rows)} {result.row_name[1]} in all"
+                yield _more_rows(result, entry.rows)
             case "failed":
                 again = f"uq rerun {result.file} --failed{result.model_option}"
                 yield f"fix the failed rows, then {again}"
             case "finer":
-                finer = answer.enough.setting or "finer settings"
-                yield f"compute more accurate {result.row_name[1]}, not more: {finer}"
+                finer = answer.enough.setting or "use finer settings"
+                yield f"{finer}, not more {result.row_name[1]}"
             case "keep":
                 place = entry.place.replace("between ", "in ").replace(" and ", " to ")
                 yield f"keep {words} {place}"
             case "nothing" if len(advice) == 1:
                 yield "nothing: the question is settled"
+
+
+def _chance(answer: Answer) -> str:
+    """Return the share of the variance that chance explains."""
+    leader = None if answer.levels is None else answer.levels.leader
+    if leader is None:
+        return "chance decides"
+    return f"{leader.words} {leader.explains} {percent(leader.share.value)}"
+
+
+def _more_rows(result: Result, rows: int) -> str:
+    """Return the advice on a number of rows, with the samples of a design of several rows each."""
+    rows, samples = rounded_size(rows, result)
+    if samples == rows:
+        return f"{STUDY} about {rows_in_words(rows)} {result.row_name[1]} in all"
+    return f"{STUDY} {grouped(rows)} {result.row_name[1]} in all (samples = {samples})"
 
 
 def statistic_name(tolerance: TighterTolerance) -> str:

@@ -140,14 +140,14 @@ def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Head
     now = line.shown.text(line.estimate.value, line.towards)
     if moved is None or line.shown.text(moved, line.towards) == now:
         return
-    by = "reduced" if side == "lower" else "raised"
+    by = "less" if side == "lower" else "plus"
     yield replace(
         line,
         key=key_of("quantities", quantity.name, "own_error", side, verb="answer"),
         label=line.label + WITH_ERRORS,
         estimate=Estimate(moved),
         towards=towards,
-        note=f"all {noun_of(tolerance_bound)} {by} by their numerical errors",
+        note=f"all {noun_of(tolerance_bound)} {by} their numerical errors",
     )
 
 

@@ -24,12 +24,20 @@ SHORT = 12
 """A card with no more lines has no blank ones and no headers of columns."""
 
 _HEADERS = {
-    "ST": "total share",
-    "S1": "share",
-    "delta": "delta, 0 to 1",
-    "pawn": "pawn, 0 to 1",
+    "ST": ("total share", ""),
+    "S1": ("share", ""),
+    "shapley": ("Shapley share", ""),
+    "delta": ("output shift", "0 to 1 (delta)"),
+    "pawn": ("output shift", "0 to 1 (PAWN)"),
+    "KS": ("input shift", "0 to 1 (KS)"),
+    "hsic": ("dependence", "0 to 1 (HSIC)"),
+    "mu_star": ("mean change", "(mu*)"),
 }
-"""Index -> the header of its column; others are shares or have the unit of the output."""
+"""Index -> the header of its column and, unless it is a share of something, its range and name.
+
+The output shift is how far the distribution of the output moves if the input is fixed.
+"""
+_INTERVAL = "95 % interval"
 _COMMANDS = "--explain  --full  --json"
 _POINTS = "percentage points"
 _BRIEF = {"seconds": "s", "minutes": "min", "hours": "h"}
@@ -134,11 +142,11 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
     leading = [line for line in card.headline if line.leads]
     others = [line for line in card.headline if not line.leads]
     warning = [*_warning(card)]
-    main = [*_headlines(leading, card), *warning]
-    table = [*_headlines(others, card)]
-    if any(line.estimate.has_interval for line in others) and not is_short:
-        label, value = _widths(card)
-        table.insert(0, Line(f"  {'':<{label}}{'estimate':>{value}}    95 % interval"))
+    first = next(
+        (line for line in (*leading, *others) if interval_of(line) and not line.note), None
+    )
+    main, table = ([*_headlines(lines, card, first, is_short)] for lines in (leading, others))
+    main += warning
     if card.besides and table:
         table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
     assumed = [] if warning or not card.assumptions else _labelled("!", (card.assumptions,))
@@ -174,22 +182,30 @@ def _beside(left: str, right: str) -> str:
     return f"{left}{' ' * gap}{right}" if gap > 1 else left
 
 
-def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
+def _headlines(
+    lines: Sequence[Headline], card: Card, first: Headline | None, is_short: bool
+) -> Iterator[Line]:
+    """Yield numbers with their intervals, which a header explains, or the first of a short card."""
     wide_label, wide_value = _widths(card)
+    if any(line is first for line in lines) and not is_short:
+        yield Line(f"  {'':<{wide_label}}{'estimate':>{wide_value}}    {_INTERVAL}")
     for line in lines:
         label, value = _label(line, card), number_of(line)
         if isnan(line.estimate.value):
             yield Line(f"  {label:<{wide_label}}{'':<{wide_value // 4}}{value}")
             continue
         start = f"  {label:<{wide_label}}{value:>{wide_value}}"
-        text = f"{start}    {printed(line.note or interval_of(line))}".rstrip()
+        more = f" ({_INTERVAL})" if line is first and is_short else ""
+        text = f"{start}    {printed(line.note or interval_of(line))}{more}".rstrip()
         place = (len(start) - len(value), len(start)) if line.leads else (0, 0)
         if len(text) <= WIDTH:
             yield Line(text, place)
             continue
-        first, _, second = text.partition("; ")
-        yield Line(f"{first};", place)
-        yield Line(f"{'':<{len(start) + 4}}{second}")
+        upper, semicolon, lower = text.partition("; ")
+        if not semicolon:
+            upper, lower = start, printed(line.note)
+        yield Line(upper + semicolon.strip(), place)
+        yield Line(f"{'':<{min(len(start) + 4, WIDTH - len(lower))}}{lower}")
 
 
 def _widths(card: Card) -> tuple[int, int]:
@@ -285,12 +301,10 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     """Return two lines of header, by column, and the cells of each cause."""
     steps = {cause.contribution.changes[0].step for cause in card.causes if _has_changes(cause)}
     step = steps.pop() if len(steps) == 1 else ""
+    upper, lower = _HEADERS.get(card.index, (card.index, ""))
     header = [
         ("CAUSES", ""),
-        (
-            _HEADERS.get(card.index, card.index),
-            f"of {card.share_of}" if card.share_of else "",
-        ),
+        (upper, f"of {card.share_of}" if card.share_of else lower),
         (f"{step} more", "changes it") if step else ("scatter halved", "(now)"),
         ("", ""),
     ]

@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from computed import asking, computed, kinds, linear, study_of, with_output, with_status
+from nested_studies import nested_result
 
 import uq as api
 from benchmarks.cards import cards_on_page
+from uq.assess.answer.sufficiency import needed, rounded_size, size_for
 from uq.assess.answer.wording import called_together
 from uq.render.card import SHORT, WIDTH, card, cause_columns, lines_of
 from uq.result.result import Result
@@ -142,9 +144,50 @@ def test_rows_are_called_what_the_model_calls_them():
     assert "1 pump, 0 failed" in str(named)
 
 
-@pytest.mark.parametrize(("index", "header"), [("pawn", "pawn, 0 to 1"), ("mu_star", "mu_star")])
-def test_only_an_index_between_0_and_1_is_said_to_be_one(shipped, index, header):
-    assert cause_columns(replace(card(shipped).card, index=index))[0][1][0] == header
+@pytest.mark.parametrize("index", ["pawn", "delta", "KS", "hsic", "mu_star", "shapley"])
+def test_an_index_is_described_in_words_and_its_range_where_it_has_one(shipped, index):
+    changed = replace(card(shipped).card, index=index, share_of="")
+    words, more = cause_columns(changed)[0][1]
+    assert re.fullmatch("[A-Z]?[a-z]+ ?[a-z]*", words) and words != index
+    assert more.startswith("0 to 1") == (index in ("pawn", "delta", "KS", "hsic"))
+
+
+def test_a_short_card_says_which_interval_it_shows(shipped):
+    lines = str(card(shipped)).splitlines()
+    assert len(lines) <= SHORT and sum("(95 % interval)" in line for line in lines) == 1
+
+
+def test_chance_comes_with_the_share_that_it_explains():
+    levels = {"x1": "own", "x2": "own", "x3": "chance", "x4": "chance"}
+    ds = nested_result(levels=levels, samples=300, units=1)
+    (step,) = (step for step in card(ds).card.next if "expect little" in step)
+    share = re.fullmatch(r"expect little of tolerances: chance explains (8\d\.\d) %", step)
+    assert float(share[1]) == pytest.approx(100 * 25 / 30, abs=5)
+
+
+def test_an_answer_whose_main_cause_is_assumed_is_no_prediction():
+    ds = linear(samples=1000)
+    ds["x4"].attrs["source"] = "assumed: a guess"
+    study = ds.attrs["study"].replace("x4 = {", 'x4 = {source = "assumed: a guess", ')
+    shown = card(asking(ds.assign_attrs(study=study), outputs=["y"])).card
+    assert shown.warning == "not a prediction: x4 contributes most and is assumed"
+    assert shown.warning in shown.json["checks"]
+    assert any("not a prediction" in line.text and line.warns for line in lines_of(shown))
+
+
+@pytest.mark.parametrize(("samples", "factor"), [(32, 1.1), (32, 2.0), (32, 5.0)])
+def test_more_rows_are_of_a_size_that_the_design_allows(samples, factor):
+    result = Result(linear("saltelli", samples=samples, replicates=4))
+    rows = size_for(factor, result)
+    wanted = rows * samples // len(result)
+    assert result.design.size_problem(wanted) is None and rows >= factor * len(result)
+    assert rounded_size(rows, result) == (rows, wanted)
+    assert f"({wanted} samples)" in needed(factor, result)
+
+
+def test_more_independent_rows_are_rounded_up():
+    result = Result(linear(samples=1000))
+    assert rounded_size(size_for(4.123, result), result) == (4200, 4200)
 
 
 def shown_with(card, **changes):
@@ -230,7 +273,7 @@ def test_the_bound_with_numerical_errors_stands_beside_the_bound():
     lines = str(shown).splitlines()
     (first,) = (i for i, line in enumerate(lines) if "95/95 life" in line)
     assert re.match(
-        "  with errors  +[0-9.]+ h    all lives reduced by their numerical errors$",
+        "  with errors  +[0-9.]+ h    all lives less their numerical errors$",
         lines[first + 1],
     )
     exact = card(with_numerical_errors(1e-9, tolerance=asked))
@@ -256,9 +299,9 @@ def test_more_accurate_rows_are_advised_with_the_setting_that_makes_them():
     ds = with_numerical_errors(0.3)
     ds["life"].attrs |= {"accuracy": 0.05, "accuracy_setting": "accuracy"}
     shown = card(ds).card
-    (step,) = (step for step in shown.next if "accurate" in step)
-    value = re.fullmatch(r"compute more accurate runs, not more: set accuracy = (0\.0\d+)", step)
+    (step,) = (step for step in shown.next if "not more runs" in step)
+    value = re.fullmatch(r"set accuracy = (0\.0\d+), not more runs", step)
     assert float(value[1]) <= 0.025
     assert not any("too few" in check for check in shown.checks)
     del ds["life"].attrs["accuracy_setting"]
-    assert any(step.endswith("not more: finer settings") for step in card(ds).card.next)
+    assert "use finer settings, not more runs" in card(ds).card.next

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from math import floor, inf, isfinite, isnan, log10
+from math import ceil, floor, inf, isfinite, isnan, log10
 from typing import Any
 
 from uq.assess.answer.events import Event
@@ -17,7 +17,8 @@ from uq.assess.findings import Findings
 from uq.assess.summary import why_no_intervals
 from uq.result.result import Result
 from uq.result.variables import is_error
-from uq.text.numbers import capitalized, percent, rows_in_words
+from uq.sampling.designs import DESIGNS
+from uq.text.numbers import capitalized, grouped, percent, rounded_up, rows_in_words
 
 SHARE = 0.2
 """A probability is settled if its half-width is at most this fraction of the rarer side ..."""
@@ -295,7 +296,38 @@ def settled(clause: str, factor: float, result: Result) -> str:
 def needed(factor: float, result: Result) -> str:
     """Return so many times the rows in words, with samples if these have several rows."""
     many = "more than" if factor > MOST else "about"
-    factor = min(factor, MOST)
-    rows = f"{many} {rows_in_words(factor * result.dataset.sizes['row'])} rows"
-    samples = rows_in_words(factor * int(result.dataset.attrs["samples"]))
-    return f"{rows} ({samples} samples)" if result.is_nested else rows
+    rows, samples = rounded_size(size_for(factor, result), result)
+    of_samples = f" ({grouped(samples)} samples)" * (rows != samples)
+    return f"{many} {rows_in_words(rows) if rows == samples else grouped(rows)} rows{of_samples}"
+
+
+def size_for(factor: float, result: Result) -> int:
+    """Return a number of rows that the design allows, for a factor on the rows.
+
+    Parameters
+    ----------
+    factor : float
+        Limited to `MOST`.
+    result : Result
+
+    Returns
+    -------
+    int
+        At least the factor times the rows of the result. A sample, of which some designs need a
+        power of two, has a row of every replicate and block of the design.
+    """
+    samples = int(result.dataset.attrs["samples"])
+    rows_of_a_sample = max(len(result) // samples, 1)
+    wanted = ceil(min(factor, MOST) * len(result) / rows_of_a_sample)
+    if DESIGNS[result.design_name].power_of_two:
+        wanted = 1 << (wanted - 1).bit_length()
+    return wanted * rows_of_a_sample
+
+
+def rounded_size(rows: int, result: Result) -> tuple[int, int]:
+    """Return a number of rows and its samples, rounded up to two digits if the design allows it."""
+    rows_of_a_sample = max(len(result) // int(result.dataset.attrs["samples"]), 1)
+    samples = ceil(rows / rows_of_a_sample)
+    if not DESIGNS[result.design_name].power_of_two:
+        samples = rounded_up(samples)
+    return samples * rows_of_a_sample, samples

@@ -173,6 +173,14 @@ def scale_warning(assumed: Sequence[str]) -> str:
     return f"not a prediction: {called_together(assumed)} {how}"
 
 
+def cause_warning(assumed: Sequence[str]) -> str:
+    """Return the clause on assumed inputs that contribute most to the scatter; "" without any."""
+    if not assumed:
+        return ""
+    how = "contributes most and is" if len(assumed) == 1 else "contribute most and are"
+    return f"not a prediction: {called_together(assumed)} {how} assumed"
+
+
 def joined(words: Sequence[str], last: str = "and") -> str:
     """Return words as a list: ``a, b and c``; "" without any."""
     return f" {last} ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
