@@ -11,7 +11,7 @@ from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution
 from uq.assess.answer.rankings import Ranking
 from uq.assess.answer.sufficiency import rounded_size
-from uq.assess.answer.tightening import tightened
+from uq.assess.answer.tightening import halvings, tightened
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import (
     ASSUMED,
@@ -92,6 +92,8 @@ class Card:
         Whether the design serves sensitivity indices, so that the causes come first.
     no_causes : str
         Reason why no input leads, or "".
+    not_halved : str
+        Reason why no number under half the scatter of a cause is known, or "".
     checks, next : tuple of str
         Clauses.
     """
@@ -114,6 +116,7 @@ class Card:
     share_of: str = ""
     indices_first: bool = False
     no_causes: str = ""
+    not_halved: str = ""
     checks: tuple[str, ...] = ()
     next: tuple[str, ...] = ()
 
@@ -170,6 +173,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
         no_causes,
+        _why_not_halved(result, answer, causes),
         tuple(_checks(findings, answer, no_causes)),
         tuple(_next(result, answer)),
     )
@@ -215,22 +219,39 @@ def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator
         return
     lead = None if answer.regimes_first else answer.lead
     compared = [entry for advice in answer.advice for entry in advice.tolerances]
-    wanted = [entry for entry in compared if lead and entry.is_share != lead.is_life] or compared
+    statistic = ""
     for contribution in ranking.contributions[:MOST_CAUSES]:
-        shown = None
-        if lead is not None and wanted:
-            same = [entry for entry in compared if set(entry.inputs) == set(contribution.inputs)]
-            if not same and all(mark_of(result, name) != CHOSEN for name in contribution.inputs):
-                same = [*tightened(result, lead, contribution.inputs)]
-            shown = next(
-                (
-                    entry
-                    for entry in same
-                    if entry.statistic == wanted[0].statistic and not entry.reason
-                ),
-                None,
-            )
-        yield LeadingInput(contribution, shown)
+        same = [entry for entry in compared if set(entry.inputs) == set(contribution.inputs)]
+        if lead is not None and not same and not _are_chosen(result, contribution):
+            same = [*tightened(result, lead, contribution.inputs)]
+        usable = [entry for entry in same if not entry.reason]
+        if lead is not None and usable and not statistic:
+            wanted = [entry for entry in compared or usable if entry.is_share != lead.is_life]
+            statistic = (wanted or compared or usable)[0].statistic
+        shown = (entry for entry in usable if entry.statistic == statistic)
+        yield LeadingInput(contribution, next(shown, None) if lead is not None else None)
+
+
+def _are_chosen(result: Result, contribution: Contribution) -> bool:
+    return any(mark_of(result, name) == CHOSEN for name in contribution.inputs)
+
+
+def _why_not_halved(result: Result, answer: Answer, causes: Sequence[LeadingInput]) -> str:
+    """Return why no number under half the scatter of a cause is known; "" if one is."""
+    if not causes or any(cause.tightened is not None for cause in causes):
+        return ""
+    first = causes[0].contribution
+    if answer.regimes_first or answer.lead is None:
+        return "not estimated for regimes"
+    if _are_chosen(result, first):
+        are = "is a design choice" if len(first.inputs) == 1 else "are design choices"
+        return f"none, {called_together(first.inputs)} {are}"
+    if not halvings(result, first.inputs):
+        return f"none, the law of {called_together(first.inputs)} has no width to halve"
+    if not DESIGNS[result.design_name].follows_laws:
+        return f"not estimated from a '{result.design_name}' design"
+    reasons = (entry.reason for entry in tightened(result, answer.lead, first.inputs))
+    return next(filter(None, reasons), "no number of the study to compare")
 
 
 def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]:

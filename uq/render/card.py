@@ -150,7 +150,7 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
     if card.besides and table:
         table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
     assumed = [] if warning or not card.assumptions else _labelled("!", (card.assumptions,))
-    causes = [*_causes(card, is_short=is_short, is_cut=is_cut)]
+    causes = [*_causes(card, is_short=is_short, is_cut=is_cut), *_not_halved(card)]
     return [
         [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],
         *([causes, main, table] if card.indices_first else [main, table, causes]),
@@ -295,6 +295,12 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
             parts = [f"{_cut(cell, width):<{width}}" for cell, width in padded]
             if line := "  ".join(parts).rstrip():
                 yield Line(f"  {line}"[:WIDTH], (2, 8) if cells is lines[0] else (0, 0))
+
+
+def _not_halved(card: Card) -> Iterator[Line]:
+    """Yield the reason why no number under half the scatter is shown."""
+    if card.not_halved:
+        yield Line(_cut(printed(f"  half scatter: {card.not_halved}"), WIDTH))
 
 
 def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:

@@ -305,3 +305,26 @@ def test_more_accurate_rows_are_advised_with_the_setting_that_makes_them():
     assert not any("too few" in check for check in shown.checks)
     del ds["life"].attrs["accuracy_setting"]
     assert "use finer settings, not more runs" in card(ds).card.next
+
+
+def test_a_missing_column_of_half_the_scatter_has_a_reason():
+    regimes = card(kinds(samples=256, analysis={"outputs": ["regime", "work"]})).card
+    if regimes.causes:
+        assert regimes.not_halved == "not estimated for regimes"
+    law = {"distribution": "discrete-choice", "values": [1e-9, 2e-9, 3e-9]}
+    tables = {
+        "study": {"name": "pads", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 400},
+        "uncertain": {"rate": law},
+    }
+    shown = card(computed(study_of(tables)))
+    assert shown.card.causes and shown.card.causes[0].tightened is None
+    assert "half scatter: none, the law of rate has no width to halve" in str(shown)
+
+
+def test_half_the_scatter_is_shown_even_if_no_tolerance_is_advised():
+    """Halving a cause that hardly moves the quantile is a result, too."""
+    ds = linear("saltelli", samples=32, replicates=4)
+    shown = card(asking(ds, outputs=["y"], wanted={"y": "below"})).card
+    assert shown.causes and not any("tighten" in step for step in shown.next)
+    assert all(cause.tightened.statistic == "the 95 % quantile" for cause in shown.causes)
