@@ -64,7 +64,10 @@ def test_an_index_that_is_not_settled_ranks_nothing_and_says_what_would_settle_i
     assert conclusions.lead.ranking.leader is None and conclusions.lead.ranking.rows_factor > 1
     assert "not settled" in conclusions.lead.ranking.sentence
     (rows,) = [advice for advice in conclusions.advice if advice.rule == "rows"]
-    match = re.match(r"Compute (?:about|more than) ([\d ]+) rows \(\d+ samples\) instead of (\d+): ", rows.text)
+    match = re.match(
+        r"Compute (?:about|more than) ([\d ]+) rows \([\d ]+ samples\) instead of (\d+): ",
+        rows.text,
+    )
     assert int(match[1].replace(" ", "")) >= rows.rows - 1 > int(match[2])
 
 
