@@ -16,10 +16,13 @@ from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import (
     ASSUMED,
     CHOSEN,
+    called,
     called_together,
     cause_warning,
+    few_values,
     mark_of,
     scale_warning,
+    without_source,
 )
 from uq.assess.card_numbers import Headline, headlines
 from uq.assess.findings import Findings
@@ -32,6 +35,8 @@ from uq.text.numbers import capitalized, counted, grouped, percent, rows_in_word
 from uq.text.units import readable
 
 MOST_CAUSES = 4
+MOST_NAMED = 2
+"""Of more fixed values without a source, their number is given."""
 STUDY = "study"
 """Begins the advice on the number of rows."""
 
@@ -83,6 +88,8 @@ class Card:
         How many laws are assumed, and which of the causes; "" for none.
     assumed_causes : tuple of str
         Assumed inputs among those that contribute most.
+    sources : str
+        Laws of few values, and fixed values without a source; "" for none.
     causes : tuple of LeadingInput
     index : str
         Key of the index of the causes: ``S1``.
@@ -111,6 +118,7 @@ class Card:
     assumed: tuple[str, ...] = ()
     assumptions: str = ""
     assumed_causes: tuple[str, ...] = ()
+    sources: str = ""
     causes: tuple[LeadingInput, ...] = ()
     index: str = ""
     share_of: str = ""
@@ -130,7 +138,7 @@ class Card:
     def json(self) -> dict[str, Any]:
         """The card in plain data; numbers in the units of the outputs."""
         causes = (entry for cause in self.causes for entry in cause.json(self.share_of))
-        warnings = filter(None, (self.warning, self.assumptions))
+        warnings = filter(None, (self.warning, self.assumptions, self.sources))
         return {
             "title": self.title,
             "rows": self.rows,
@@ -168,6 +176,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         () if lead is None else lead.scaled_by,
         _assumptions(result, assumed_causes),
         assumed_causes,
+        _sources(result),
         causes,
         "" if ranking is None else ranking.kind,
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
@@ -203,6 +212,19 @@ def _assumptions(result: Result, assumed_causes: Sequence[str]) -> str:
     among = called_together(assumed_causes)
     text = f"{len(assumed)} of {counted(len(laws), 'law')} assumed"
     return f"{text}, {among} among them" if among and 1 < len(assumed) < len(laws) else text
+
+
+def _sources(result: Result) -> str:
+    """Return what the laws and fixed values rest on, as far as that is little."""
+    clauses = [
+        f"the law of {called(name)} rests on {counted(count, 'value')}"
+        for name, count in few_values(result).items()
+    ]
+    given = without_source(result)
+    if given:
+        named = called_together(given) if len(given) <= MOST_NAMED else counted(len(given), "value")
+        clauses.append(f"{named} fixed without a source")
+    return "; ".join(clauses)
 
 
 def _ranking(answer: Answer) -> Ranking | None:

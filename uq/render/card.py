@@ -149,7 +149,8 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
     main += warning
     if card.besides and table:
         table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
-    assumed = [] if warning or not card.assumptions else _labelled("!", (card.assumptions,))
+    doubts = filter(None, ("" if warning else card.assumptions, card.sources))
+    assumed = _labelled("!", tuple(doubts))
     causes = [*_causes(card, is_short=is_short, is_cut=is_cut), *_not_halved(card)]
     return [
         [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],

@@ -328,3 +328,19 @@ def test_half_the_scatter_is_shown_even_if_no_tolerance_is_advised():
     shown = card(asking(ds, outputs=["y"], wanted={"y": "below"})).card
     assert shown.causes and not any("tighten" in step for step in shown.next)
     assert all(cause.tightened.statistic == "the 95 % quantile" for cause in shown.causes)
+
+
+def test_a_law_of_few_values_and_a_fixed_value_without_source_are_pointed_out():
+    values = [1e-9 * (1 + 0.1 * i) for i in range(12)]
+    tables = {
+        "study": {"name": "pads", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 100},
+        "fixed": {"depth": 2e-3},
+        "uncertain": {"rate": {"distribution": "empirical", "values": values}},
+    }
+    clause = "the law of rate rests on 12 values; depth fixed without a source"
+    shown = card(computed(study_of(tables)))
+    assert f"! {clause}" in str(shown) and clause in shown.card.json["checks"]
+    tables["uncertain"]["rate"]["values"] = [1e-9 * (1 + 0.01 * i) for i in range(100)]
+    del tables["fixed"]
+    assert card(computed(study_of(tables))).card.sources == ""
