@@ -128,8 +128,9 @@ def _lines_of(card: Card) -> list[Line]:
     if len(short) <= SHORT:
         return short
     counts = range(len(card.causes), max(len(card.causes) - 3, 0), -1)
-    fewer = ((replace(card, causes=card.causes[:count]), False) for count in counts)
-    for shown, is_cut in (*fewer, (card, True)):
+    bare = replace(card, not_halved="")
+    fewer = ((replace(bare, causes=card.causes[:count]), False) for count in counts)
+    for shown, is_cut in ((card, False), *fewer, (bare, True)):
         blocks = [block for block in _blocks(shown, is_short=False, is_cut=is_cut) if block]
         lines = [line for block in blocks for line in (Line(""), *block)][1:]
         lines = _with_commands(lines)
