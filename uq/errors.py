@@ -91,8 +91,14 @@ def nearest(name: str, choices: Iterable[str], key: Callable[[str], str] = str.l
         Text to append to an error line.
     """
     by_key = {key(choice): choice for choice in choices}
-    close = get_close_matches(key(name), by_key, n=1)
+    close = get_close_matches(key(name), by_key, n=1) or _longer(key(name), by_key)
     return f"; did you mean '{by_key[close[0]]}'?" if close else ""
+
+
+def _longer(name: str, choices: Iterable[str]) -> list[str]:
+    """Return the only choice that begins with a name and an underscore; else none."""
+    longer = [choice for choice in choices if choice.startswith(f"{name}_")]
+    return longer if len(longer) == 1 else []
 
 
 def nearest_file(name: str, files: Iterable[str]) -> str:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,17 +9,20 @@ import numpy as np
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution
-from uq.assess.answer.piece_of_advice import Advice
-from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.rankings import Ranking
-from uq.assess.answer.tightening import tightened
+from uq.assess.answer.sufficiency import rounded_size
+from uq.assess.answer.tightening import halvings, tightened
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import (
     ASSUMED,
     CHOSEN,
+    called,
     called_together,
+    cause_warning,
+    few_values,
     mark_of,
     scale_warning,
+    without_source,
 )
 from uq.assess.card_numbers import Headline, headlines
 from uq.assess.findings import Findings
@@ -29,10 +31,12 @@ from uq.contract import Status
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PLAIN
 from uq.stats import estimate_json
-from uq.text.numbers import capitalized, counted, percent, rows_in_words
+from uq.text.numbers import capitalized, counted, grouped, percent, rows_in_words
 from uq.text.units import readable
 
 MOST_CAUSES = 4
+MOST_NAMED = 2
+"""Of more fixed values without a source, their number is given."""
 STUDY = "study"
 """Begins the advice on the number of rows."""
 
@@ -82,6 +86,10 @@ class Card:
         Assumed inputs to which every life is proportional.
     assumptions : str
         How many laws are assumed, and which of the causes; "" for none.
+    assumed_causes : tuple of str
+        Assumed inputs among those that contribute most.
+    sources : str
+        Laws of few values, and fixed values without a source; "" for none.
     causes : tuple of LeadingInput
     index : str
         Key of the index of the causes: ``S1``.
@@ -91,6 +99,8 @@ class Card:
         Whether the design serves sensitivity indices, so that the causes come first.
     no_causes : str
         Reason why no input leads, or "".
+    not_halved : str
+        Reason why no number under half the scatter of a cause is known, or "".
     checks, next : tuple of str
         Clauses.
     """
@@ -107,24 +117,28 @@ class Card:
     headline: tuple[Headline, ...] = ()
     assumed: tuple[str, ...] = ()
     assumptions: str = ""
+    assumed_causes: tuple[str, ...] = ()
+    sources: str = ""
     causes: tuple[LeadingInput, ...] = ()
     index: str = ""
     share_of: str = ""
     indices_first: bool = False
     no_causes: str = ""
+    not_halved: str = ""
     checks: tuple[str, ...] = ()
     next: tuple[str, ...] = ()
 
     @property
     def warning(self) -> str:
-        """Clause on assumed inputs that set the scale of every life; "" without any."""
-        return scale_warning(self.assumed)
+        """Clause on assumed inputs that set the scale of a life or contribute most, or ""."""
+        causes = () if self.besides else self.assumed_causes  # no single input decides a regime
+        return scale_warning(self.assumed) or cause_warning(causes)
 
     @property
     def json(self) -> dict[str, Any]:
         """The card in plain data; numbers in the units of the outputs."""
         causes = (entry for cause in self.causes for entry in cause.json(self.share_of))
-        warnings = filter(None, (self.warning, self.assumptions))
+        warnings = filter(None, (self.warning, self.assumptions, self.sources))
         return {
             "title": self.title,
             "rows": self.rows,
@@ -143,6 +157,8 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
     attrs, lead = result.dataset.attrs, answer.lead
     ranking = _ranking(answer)
     causes = tuple(_causes(result, answer, ranking))
+    leading = [name for cause in causes[:1] for name in cause.contribution.sure]
+    assumed_causes = tuple(name for name in leading if mark_of(result, name) == ASSUMED)
     no_causes = ""
     if ranking is not None and not causes:
         no_causes = ranking.reason or "no input contributes measurably"
@@ -158,14 +174,17 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         result.row_name,
         tuple(headlines(findings, answer)),
         () if lead is None else lead.scaled_by,
-        _assumptions(result, causes),
+        _assumptions(result, assumed_causes),
+        assumed_causes,
+        _sources(result),
         causes,
         "" if ranking is None else ranking.kind,
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
         no_causes,
+        _why_not_halved(result, answer, causes),
         tuple(_checks(findings, answer, no_causes)),
-        tuple(_next(result, answer.advice)),
+        tuple(_next(result, answer)),
     )
 
 
@@ -185,15 +204,27 @@ def _share_of(ranking: Ranking, is_life: bool) -> str:
     return "variance"
 
 
-def _assumptions(result: Result, causes: Sequence[LeadingInput]) -> str:
+def _assumptions(result: Result, assumed_causes: Sequence[str]) -> str:
     laws = [name for name in result.study.uncertain if name in result.dataset.variables]
     assumed = [name for name in laws if mark_of(result, name) == ASSUMED]
     if not assumed:
         return ""
-    leading = [name for cause in causes[:1] for name in cause.contribution.sure]
-    among = called_together([name for name in leading if name in assumed])
+    among = called_together(assumed_causes)
     text = f"{len(assumed)} of {counted(len(laws), 'law')} assumed"
     return f"{text}, {among} among them" if among and 1 < len(assumed) < len(laws) else text
+
+
+def _sources(result: Result) -> str:
+    """Return what the laws and fixed values rest on, as far as that is little."""
+    clauses = [
+        f"the law of {called(name)} rests on {counted(count, 'value')}"
+        for name, count in few_values(result).items()
+    ]
+    given = without_source(result)
+    if given:
+        named = called_together(given) if len(given) <= MOST_NAMED else counted(len(given), "value")
+        clauses.append(f"{named} fixed without a source")
+    return "; ".join(clauses)
 
 
 def _ranking(answer: Answer) -> Ranking | None:
@@ -210,22 +241,39 @@ def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator
         return
     lead = None if answer.regimes_first else answer.lead
     compared = [entry for advice in answer.advice for entry in advice.tolerances]
-    wanted = [entry for entry in compared if lead and entry.is_share != lead.is_life] or compared
+    statistic = ""
     for contribution in ranking.contributions[:MOST_CAUSES]:
-        shown = None
-        if lead is not None and wanted:
-            same = [entry for entry in compared if set(entry.inputs) == set(contribution.inputs)]
-            if not same and all(mark_of(result, name) != CHOSEN for name in contribution.inputs):
-                same = [*tightened(result, lead, contribution.inputs)]
-            shown = next(
-                (
-                    entry
-                    for entry in same
-                    if entry.statistic == wanted[0].statistic and not entry.reason
-                ),
-                None,
-            )
-        yield LeadingInput(contribution, shown)
+        same = [entry for entry in compared if set(entry.inputs) == set(contribution.inputs)]
+        if lead is not None and not same and not _are_chosen(result, contribution):
+            same = [*tightened(result, lead, contribution.inputs)]
+        usable = [entry for entry in same if not entry.reason]
+        if lead is not None and usable and not statistic:
+            wanted = [entry for entry in compared or usable if entry.is_share != lead.is_life]
+            statistic = (wanted or compared or usable)[0].statistic
+        shown = (entry for entry in usable if entry.statistic == statistic)
+        yield LeadingInput(contribution, next(shown, None) if lead is not None else None)
+
+
+def _are_chosen(result: Result, contribution: Contribution) -> bool:
+    return any(mark_of(result, name) == CHOSEN for name in contribution.inputs)
+
+
+def _why_not_halved(result: Result, answer: Answer, causes: Sequence[LeadingInput]) -> str:
+    """Return why no number under half the scatter of a cause is known; "" if one is."""
+    if not causes or any(cause.tightened is not None for cause in causes):
+        return ""
+    first = causes[0].contribution
+    if answer.regimes_first or answer.lead is None:
+        return "not estimated for regimes"
+    if _are_chosen(result, first):
+        are = "is a design choice" if len(first.inputs) == 1 else "are design choices"
+        return f"none, {called_together(first.inputs)} {are}"
+    if not halvings(result, first.inputs):
+        return f"none, the law of {called_together(first.inputs)} has no width to halve"
+    if not DESIGNS[result.design_name].follows_laws:
+        return f"not estimated from a '{result.design_name}' design"
+    reasons = (entry.reason for entry in tightened(result, answer.lead, first.inputs))
+    return next(filter(None, reasons), "no number of the study to compare")
 
 
 def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]:
@@ -242,35 +290,23 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
         yield f"sample size cannot be judged: {enough.unknown}"
     elif enough.question:
         clause = enough.question[0][0]
-        yield f"too few {plural}" + f": {clause}" * (clause != no_causes)
+        clause = clause.partition(":")[0] if clause == no_causes else clause
+        yield f"not settled: {clause}" if enough.errors else f"too few {plural}: {clause}"
     else:
         yield f"enough {plural}" + " but for the failures" * bool(answer.failed)
+    if enough.errors is not None:
+        yield f"numerical error exceeds sampling error (of the {enough.errors.estimate})"
     error = {} if lead is None or lead.own_error is None else lead.own_error.members
     if error.get("rows_missing_it"):
         share, accuracy = percent(error["rows_missing_it"]), 100 * error["accuracy"]
-        text = f"{share} have numerical errors above {accuracy:g} %"
-        yield text + _moved(lead, error)
+        yield f"{share} have numerical errors above {accuracy:g} %"
     if answer.regimes and not answer.regimes_first:
         yield f"{percent(answer.regimes[0].share.value)} {answer.regimes[0].predicate}"
 
 
-def _moved(lead: Quantity | None, error: Any) -> str:
-    """Return the bound if every value were wrong by its stated error; "" if that is the same."""
-    tolerance_bound = None if lead is None else lead.tolerance_bound
-    if tolerance_bound is None:
-        return ""
-    for name, bound, towards in (
-        ("lower", tolerance_bound.lower, -inf),
-        ("upper", tolerance_bound.upper, inf),
-    ):
-        if isfinite(bound) and error[name] is not None:
-            moved = tolerance_bound.unit.text(error[name], towards)
-            return f" (bound then {moved})" * (moved != tolerance_bound.unit.text(bound, towards))
-    return ""
-
-
-def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
+def _next(result: Result, answer: Answer) -> Iterator[str]:
     """Yield each piece of advice in a few words, the most urgent first, more rows second."""
+    advice = answer.advice
     first, others = [*advice[:1]], [*advice[1:]]
     for entry in first + sorted(others, key=lambda entry: entry.rule != "rows"):
         words = called_together(entry.inputs) if entry.inputs else ""
@@ -280,22 +316,39 @@ def _next(result: Result, advice: Sequence[Advice]) -> Iterator[str]:
             case "tighten" if entry.tightened is not None and not entry.tightened.reason:
                 yield f"tighten {words}"
             case "chance":
-                yield "expect little of tolerances: chance decides"
+                yield f"expect little of tolerances: {_chance(answer)}"
             case "source":
                 verb = "is" if len(entry.inputs) == 1 else "are"
                 yield f"state in 'source' how {words} {verb} known"
             case "rows" if entry.rows is not None:
-                yield f"{STUDY} about {rows_in_words(entry.rows)} {result.row_name[1]} in all"
+                yield _more_rows(result, entry.rows)
             case "failed":
                 again = f"uq rerun {result.file} --failed{result.model_option}"
                 yield f"fix the failed rows, then {again}"
             case "finer":
-                yield "compute more accurate rows, not more"
+                finer = answer.enough.setting or "use finer settings"
+                yield f"{finer}, not more {result.row_name[1]}"
             case "keep":
                 place = entry.place.replace("between ", "in ").replace(" and ", " to ")
                 yield f"keep {words} {place}"
             case "nothing" if len(advice) == 1:
                 yield "nothing: the question is settled"
+
+
+def _chance(answer: Answer) -> str:
+    """Return the share of the variance that chance explains."""
+    leader = None if answer.levels is None else answer.levels.leader
+    if leader is None:
+        return "chance decides"
+    return f"{leader.words} {leader.explains} {percent(leader.share.value)}"
+
+
+def _more_rows(result: Result, rows: int) -> str:
+    """Return the advice on a number of rows, with the samples of a design of several rows each."""
+    rows, samples = rounded_size(rows, result)
+    if samples == rows:
+        return f"{STUDY} about {rows_in_words(rows)} {result.row_name[1]} in all"
+    return f"{STUDY} {grouped(rows)} {result.row_name[1]} in all (samples = {samples})"
 
 
 def statistic_name(tolerance: TighterTolerance) -> str:

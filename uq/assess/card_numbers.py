@@ -8,7 +8,7 @@ from typing import Any
 from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.events import Event
 from uq.assess.answer.quantities import Quantity
-from uq.assess.answer.tolerance_bound import ToleranceBound
+from uq.assess.answer.tolerance_bound import ToleranceBound, noun_of
 from uq.assess.answer.wording import DisplayUnit
 from uq.assess.findings import Findings
 from uq.stats import estimate_json
@@ -16,6 +16,8 @@ from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
 
 MOST_REGIMES = 4
+WITH_ERRORS = " with numerical errors"
+"""Ends the label of a bound that includes the numerical errors of the rows."""
 
 
 @dataclass(frozen=True)
@@ -107,15 +109,17 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
             does = _does(tolerance_bound, side)
             note = f"{covered:g} % {does}; {confidence:g} % confidence (sampling)"
             estimate, leads = Estimate(bound), quantity.is_life or not quantity.events
-            yield Headline(
+            line = Headline(
                 key(side), label, estimate, unit, tolerance_bound.unit, towards, note, leads
             )
+            yield line
+            yield from _with_errors(quantity, line, side)
     if isfinite(tolerance_bound.lower) or isfinite(tolerance_bound.upper):
         return
     quantiles = zip(tolerance_bound.probabilities, tolerance_bound.quantiles, bounds, strict=True)
     for p, estimate, side in quantiles:
         if isfinite(estimate.value):
-            yield Headline(
+            line = Headline(
                 key(f"{side}_quantile"),
                 f"{100 * p:g} % quantile",
                 estimate,
@@ -123,6 +127,28 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
                 tolerance_bound.unit,
                 leads=quantity.is_life or not quantity.events,
             )
+            yield line
+            yield from _with_errors(quantity, line, side)
+
+
+def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Headline]:
+    """Yield a bound or quantile of values that all err to its unsafe side, if it differs."""
+    error, tolerance_bound = quantity.own_error, quantity.tolerance_bound
+    if error is None or tolerance_bound is None or line.shown is None:
+        return
+    moved, towards = error.members[side], -inf if side == "lower" else inf
+    now = line.shown.text(line.estimate.value, line.towards)
+    if moved is None or line.shown.text(moved, line.towards) == now:
+        return
+    by = "less" if side == "lower" else "plus"
+    yield replace(
+        line,
+        key=key_of("quantities", quantity.name, "own_error", side, verb="answer"),
+        label=line.label + WITH_ERRORS,
+        estimate=Estimate(moved),
+        towards=towards,
+        note=f"all {noun_of(tolerance_bound)} {by} their numerical errors",
+    )
 
 
 def _does(tolerance_bound: ToleranceBound, side: str) -> str:

@@ -53,6 +53,8 @@ def check(path: str, model: str | None) -> None:
             *([("until", _until(design))] if design.until else ()),
             *([("seeds", seeds)] * shared),
             ("outputs", ", ".join(study.analysis.outputs)),
+            *([("thresholds", _thresholds(study))] if study.analysis.thresholds else ()),
+            *([("tolerance", _tolerance(study))] if study.analysis.tolerance else ()),
             ("sensitivity", f"this design can provide {', '.join(fed_by(kind, dependent))}"),
             ("result", str(runner.output_path(study))),
         ]
@@ -65,11 +67,42 @@ def check(path: str, model: str | None) -> None:
     levels = [(study.level(line[0]),) * by_level for line in laws + ties]
     lines = [line + level for line, level in zip(laws + ties, levels, strict=True)]
     grid(lines, header=header + ("level",) * by_level)
+    _show_constants(study)
     _show_sampled(study)
     if lacking := hints(study):
         heading("\nBefore you run it")
         for sentence in lacking:
             paragraph(sentence, indent=2)
+
+
+def _thresholds(study: Study) -> str:
+    """Return the thresholds as the study gives them, with their units."""
+    units = {name: output.unit for name, output in study.model.outputs.items()}
+    given = (
+        f"{name}: {', '.join(threshold(t, units.get(name, '1')) for t in values)}"
+        for name, values in study.analysis.thresholds.items()
+    )
+    return "; ".join(given)
+
+
+def _tolerance(study: Study) -> str:
+    assert study.analysis.tolerance is not None
+    coverage, confidence = study.analysis.tolerance
+    return f"bounds that cover {100 * coverage:g} % with {100 * confidence:g} % confidence"
+
+
+def _show_constants(study: Study) -> None:
+    """Print the values that do not vary: those of the study, and nominal values of the model."""
+    varied = {*study.uncertain, *study.tied}
+    nominal = [name for name in study.model.nominal if name not in {*varied, *study.fixed}]
+    of_study = {name: study.fixed[name] for name in study.fixed}
+    of_model = {name: study.model.nominal[name] for name in nominal}
+    for title, values in (("of the study", of_study), ("nominal", of_model)):
+        if values:
+            heading(f"\nFixed values, {title}")
+            units = {name: study.model.parameter(name).unit for name in values}
+            shown = (f"{name} = {quantity(value, units[name])}" for name, value in values.items())
+            paragraph(", ".join(shown), indent=2)
 
 
 def _until(design: DesignTable) -> str:

@@ -18,6 +18,7 @@ from uq.result.one_row import Row
 from uq.study.hints import undeclared_lives
 from uq.text.literals import read_number, read_toml
 from uq.text.numbers import in_brackets
+from uq.text.quantities import read_quantity, read_threshold
 from uq.text.units import readable, typical, unit_of
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def simulate(
     plot: Path | None,
 ) -> int:
     """Run a model once and show the result; return the exit code."""
-    given = dict(_number(text) for text in parameters)
+    given = dict(_number(text, reference) for text in parameters)
     chosen = dict(literal(text) for text in settings)
     if output or plot:
         check_files(load_model(reference), output, plot)
@@ -176,14 +177,23 @@ def _shown(value: float, state: str, per: float) -> str:
     return state or ("failed" if np.isnan(value) else number(value / per))
 
 
-def _number(text: str) -> tuple[str, float]:
-    name, _, value = text.partition("=")
+def _number(text: str, reference: str) -> tuple[str, float]:
+    """Return name and value of a parameter; the value may have a unit."""
+    name, _, value = (part.strip() for part in text.partition("="))
     try:
-        return name.strip(), read_number(value)
+        return name, read_number(value)
     except ValueError:
-        raise InputError(f"--set {text}: write it as NAME=VALUE with a number") from None
+        pass
     except OverflowError as error:
         raise InputError(f"--set {text}: {error}") from None
+    model, quantity = load_model(reference), value.strip("\"'")
+    try:
+        read_quantity(quantity)
+    except ValueError:
+        problem = "write it as NAME=VALUE with a number, or a number and its unit"
+        raise InputError(f"--set {text}: {problem}") from None
+    units = model.parameter(name).unit if name in model.parameter_names else "1"
+    return name, read_threshold(f"--set {name} =", quantity, name, units)
 
 
 def literal(text: str) -> tuple[str, Any]:

@@ -78,6 +78,7 @@ def row(
     result: Path,
     number: int | None,
     lowest: str | None,
+    highest: str | None,
     near_quantile: tuple[float, str] | None,
     plot: Path | None,
     model: str | None,
@@ -90,7 +91,7 @@ def row(
             load_model(model) if model else find_model(opened.dataset.attrs["model"]), None, plot
         )
     with compilation(say_compiling):
-        recomputed = row_again(opened, number, lowest, near_quantile, model, str(result))
+        recomputed = row_again(opened, number, lowest, near_quantile, model, str(result), highest)
         if plot:
             if recomputed.again is None:
                 raise InputError(

@@ -24,7 +24,14 @@ from uq.result import result_file
 from uq.result.elements import flags
 from uq.result.one_row import Row, run_row
 from uq.result.result import AnyResult, Result
-from uq.result.row_choice import Choice, lowest_row, near_quantile_row, place_of, stored_row
+from uq.result.row_choice import (
+    Choice,
+    highest_row,
+    lowest_row,
+    near_quantile_row,
+    place_of,
+    stored_row,
+)
 from uq.study.installed_models import model_at
 
 MOST_SHOWN = 6
@@ -185,6 +192,7 @@ def row(
     near_quantile: tuple[float, str] | None = None,
     model: str | None = None,
     trajectory: bool = True,
+    highest: str | None = None,
 ) -> xr.Dataset:
     """Return one row of a result, computed again with its time history.
 
@@ -192,7 +200,7 @@ def row(
     ----------
     result : Result, xarray.Dataset or path
     number : int, optional
-        Of the row, from 0. Give this, `lowest` or `near_quantile`.
+        Of the row, from 0. Give this, `lowest`, `highest` or `near_quantile`.
     lowest : str, optional
         An output, or an element of one: take the row in which it is lowest. Lives that are censored
         count as longer than those that ended, lives that never end as the longest.
@@ -202,6 +210,8 @@ def row(
         Where the model lives, if it is not installed.
     trajectory : bool
         Whether to compute the time history as well.
+    highest : str, optional
+        As `lowest`: take the row in which it is highest.
 
     Returns
     -------
@@ -221,7 +231,7 @@ def row(
     >>> shortest["life"].item() == ds["life"].min().item(), shortest["equal"].item()
     (True, True)
     """
-    recomputed = row_again(Result.of(result), number, lowest, near_quantile, model)
+    recomputed = row_again(Result.of(result), number, lowest, near_quantile, model, highest=highest)
     attrs = {"long_name": "whether computing the row again gave the same bits"}
     reason = {"reason": recomputed.reason} if recomputed.reason else {}
     annotated = recomputed.stored.dataset.assign(equal=((), recomputed.equal, attrs | reason))
@@ -237,14 +247,17 @@ def row_again(
     near_quantile: tuple[float, str] | None = None,
     model: str | None = None,
     source: str = "this result",
+    highest: str | None = None,
 ) -> RowAgain:
     """Find a row of a result and compute it again; see `row`."""
-    if sum(given is not None for given in (number, lowest, near_quantile)) != 1:
-        raise InputError("give one of: the number of a row, --lowest, --near-quantile")
+    if sum(given is not None for given in (number, lowest, highest, near_quantile)) != 1:
+        raise InputError("give one of: the number of a row, --lowest, --highest, --near-quantile")
     result.refuse_if_weighted("a row computed again")
     choice = None
     if lowest is not None:
         choice = lowest_row(result, lowest)
+    elif highest is not None:
+        choice = highest_row(result, highest)
     elif near_quantile is not None:
         choice = near_quantile_row(result, *near_quantile)
     chosen = choice.number if choice else int(number or 0)

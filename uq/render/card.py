@@ -13,7 +13,7 @@ from uq.assess.answer.contributions import AverageEffect
 from uq.assess.answer.tolerance_effects import TighterTolerance
 from uq.assess.answer.wording import DisplayUnit, called_together
 from uq.assess.card import STUDY, Card, LeadingInput, card_of, statistic_name
-from uq.assess.card_numbers import Headline
+from uq.assess.card_numbers import WITH_ERRORS, Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
 from uq.text.numbers import TO_THESE_DIGITS, counted, grouped, percent, percent_interval, printed
@@ -24,12 +24,20 @@ SHORT = 12
 """A card with no more lines has no blank ones and no headers of columns."""
 
 _HEADERS = {
-    "ST": "total share",
-    "S1": "share",
-    "delta": "delta, 0 to 1",
-    "pawn": "pawn, 0 to 1",
+    "ST": ("total share", ""),
+    "S1": ("share", ""),
+    "shapley": ("Shapley share", ""),
+    "delta": ("output shift", "0 to 1 (delta)"),
+    "pawn": ("output shift", "0 to 1 (PAWN)"),
+    "KS": ("input shift", "0 to 1 (KS)"),
+    "hsic": ("dependence", "0 to 1 (HSIC)"),
+    "mu_star": ("mean change", "(mu*)"),
 }
-"""Index -> the header of its column; others are shares or have the unit of the output."""
+"""Index -> the header of its column and, unless it is a share of something, its range and name.
+
+The output shift is how far the distribution of the output moves if the input is fixed.
+"""
+_INTERVAL = "95 % interval"
 _COMMANDS = "--explain  --full  --json"
 _POINTS = "percentage points"
 _BRIEF = {"seconds": "s", "minutes": "min", "hours": "h"}
@@ -120,8 +128,9 @@ def _lines_of(card: Card) -> list[Line]:
     if len(short) <= SHORT:
         return short
     counts = range(len(card.causes), max(len(card.causes) - 3, 0), -1)
-    fewer = ((replace(card, causes=card.causes[:count]), False) for count in counts)
-    for shown, is_cut in (*fewer, (card, True)):
+    bare = replace(card, not_halved="")
+    fewer = ((replace(bare, causes=card.causes[:count]), False) for count in counts)
+    for shown, is_cut in ((card, False), *fewer, (bare, True)):
         blocks = [block for block in _blocks(shown, is_short=False, is_cut=is_cut) if block]
         lines = [line for block in blocks for line in (Line(""), *block)][1:]
         lines = _with_commands(lines)
@@ -134,15 +143,16 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
     leading = [line for line in card.headline if line.leads]
     others = [line for line in card.headline if not line.leads]
     warning = [*_warning(card)]
-    main = [*_headlines(leading, card), *warning]
-    table = [*_headlines(others, card)]
-    if any(line.estimate.has_interval for line in others) and not is_short:
-        label, value = _widths(card)
-        table.insert(0, Line(f"  {'':<{label}}{'estimate':>{value}}    95 % interval"))
+    first = next(
+        (line for line in (*leading, *others) if interval_of(line) and not line.note), None
+    )
+    main, table = ([*_headlines(lines, card, first, is_short)] for lines in (leading, others))
+    main += warning
     if card.besides and table:
         table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
-    assumed = [] if warning or not card.assumptions else _labelled("!", (card.assumptions,))
-    causes = [*_causes(card, is_short=is_short, is_cut=is_cut)]
+    doubts = filter(None, ("" if warning else card.assumptions, card.sources))
+    assumed = _labelled("!", tuple(doubts))
+    causes = [*_causes(card, is_short=is_short, is_cut=is_cut), *_not_halved(card)]
     return [
         [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],
         *([causes, main, table] if card.indices_first else [main, table, causes]),
@@ -174,29 +184,43 @@ def _beside(left: str, right: str) -> str:
     return f"{left}{' ' * gap}{right}" if gap > 1 else left
 
 
-def _headlines(lines: Sequence[Headline], card: Card) -> Iterator[Line]:
+def _headlines(
+    lines: Sequence[Headline], card: Card, first: Headline | None, is_short: bool
+) -> Iterator[Line]:
+    """Yield numbers with their intervals, which a header explains, or the first of a short card."""
     wide_label, wide_value = _widths(card)
+    if any(line is first for line in lines) and not is_short:
+        yield Line(f"  {'':<{wide_label}}{'estimate':>{wide_value}}    {_INTERVAL}")
     for line in lines:
-        label, value = label_of(line, card), number_of(line)
+        label, value = _label(line, card), number_of(line)
         if isnan(line.estimate.value):
             yield Line(f"  {label:<{wide_label}}{'':<{wide_value // 4}}{value}")
             continue
         start = f"  {label:<{wide_label}}{value:>{wide_value}}"
-        text = f"{start}    {printed(line.note or interval_of(line))}".rstrip()
+        more = f" ({_INTERVAL})" if line is first and is_short else ""
+        text = f"{start}    {printed(line.note or interval_of(line))}{more}".rstrip()
         place = (len(start) - len(value), len(start)) if line.leads else (0, 0)
         if len(text) <= WIDTH:
             yield Line(text, place)
             continue
-        first, _, second = text.partition("; ")
-        yield Line(f"{first};", place)
-        yield Line(f"{'':<{len(start) + 4}}{second}")
+        upper, semicolon, lower = text.partition("; ")
+        if not semicolon:
+            upper, lower = start, printed(line.note)
+        yield Line(upper + semicolon.strip(), place)
+        yield Line(f"{'':<{min(len(start) + 4, WIDTH - len(lower))}}{lower}")
 
 
 def _widths(card: Card) -> tuple[int, int]:
     """Return the widths of labels and of values."""
-    labels = [len(label_of(line, card)) for line in card.headline]
+    labels = [len(_label(line, card)) for line in card.headline]
     values = [len(number_of(line)) for line in card.headline if not isnan(line.estimate.value)]
     return max([17, *labels]) + 2, max([10, *values])
+
+
+def _label(line: Headline, card: Card) -> str:
+    """Return the label of a number in a column; of a bound with errors, the note says of what."""
+    label = label_of(line, card)
+    return "with errors" if label.endswith(WITH_ERRORS) else label
 
 
 def label_of(line: Headline, card: Card) -> str:
@@ -275,16 +299,20 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
                 yield Line(f"  {line}"[:WIDTH], (2, 8) if cells is lines[0] else (0, 0))
 
 
+def _not_halved(card: Card) -> Iterator[Line]:
+    """Yield the reason why no number under half the scatter is shown."""
+    if card.not_halved:
+        yield Line(_cut(printed(f"  half scatter: {card.not_halved}"), WIDTH))
+
+
 def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     """Return two lines of header, by column, and the cells of each cause."""
     steps = {cause.contribution.changes[0].step for cause in card.causes if _has_changes(cause)}
     step = steps.pop() if len(steps) == 1 else ""
+    upper, lower = _HEADERS.get(card.index, (card.index, ""))
     header = [
         ("CAUSES", ""),
-        (
-            _HEADERS.get(card.index, card.index),
-            f"of {card.share_of}" if card.share_of else "",
-        ),
+        (upper, f"of {card.share_of}" if card.share_of else lower),
         (f"{step} more", "changes it") if step else ("scatter halved", "(now)"),
         ("", ""),
     ]

@@ -64,6 +64,31 @@ def lowest_row(result: Result, name: str) -> Choice:
     return Choice(int(result.dataset["row"].values[place]), words)
 
 
+def highest_row(result: Result, name: str) -> Choice:
+    """Return the row in which an output, or one element of it, is highest.
+
+    Parameters
+    ----------
+    result : Result
+        A result.
+    name : str
+        As `uq.result.elements.named_elements` takes it.
+
+    Returns
+    -------
+    Choice
+        A row that never ends, if there is one, else one that was censored; never one that failed
+        or is undefined.
+
+    Raises
+    ------
+    InputError
+        When there is no such output, or no row has a value.
+    """
+    element, order = max(_ordered(result, name), key=lambda pair: _rank(pair[0], pair[1][-1]))
+    return Choice(int(result.dataset["row"].values[order[-1]]), f"the highest {element.name}")
+
+
 def lowest_rows(result: Result, name: str, most: int) -> list[tuple[int, float]]:
     """Return the rows in which one element is lowest, each with its value; only rows that ended.
 

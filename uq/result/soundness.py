@@ -220,7 +220,7 @@ def _attribute_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
         yield f"attribute 'admissible' of '{name}' is not two numbers in order"
     if not _are_numbers(attrs.get("accuracy", 1.0), 1):
         yield f"attribute 'accuracy' of '{name}' is not a number"
-    for text in ("source", "symbol", "success", "level"):
+    for text in ("source", "symbol", "success", "level", "accuracy_setting"):
         if not isinstance(attrs.get(text, ""), str):
             yield f"attribute '{text}' of '{name}' is not text"
     if attrs.get("role") == "censored" and not np.isin(variable.values, (0, 1)).all():

@@ -63,6 +63,7 @@ def output_variables(
         }
         if output.accuracy:
             attrs["accuracy"] = float(getattr(settings, output.accuracy))
+            attrs["accuracy_setting"] = output.accuracy
         if output.is_lifetime:
             attrs["never_known_at_once"] = int(output.never_known_at_once)
         if output.success:
@@ -86,7 +87,7 @@ def output_variables(
 def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
     """Return the outputs of a result as its variables declare them, by name and in order.
 
-    The setting of their accuracy is not recorded.
+    Results of earlier versions do not record the setting of the accuracy.
     """
     return {
         str(name): Output(
@@ -97,6 +98,7 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
             bool(variable.attrs["may_be_undefined"]),
             censored_name(str(name)) in ds,
             tuple(variable.attrs.get("flag_meanings", "").split()[1:]),
+            accuracy=str(variable.attrs.get("accuracy_setting", "")),
             success=str(variable.attrs.get("success", "")),
             never_known_at_once=bool(variable.attrs.get("never_known_at_once", True)),
             scales=json.loads(variable.attrs.get("scales", "{}")),

@@ -95,4 +95,13 @@ def fault_of(
         name_kind, names = allowed_at(path)
         return InputFault(path, unknown(name_kind, str(path[-1]), names), error["input"])
     reason = _REASONS.get(kind, "").format(**error.get("ctx", {}))
-    return InputFault(path, reason or error["msg"], error["input"])
+    return InputFault(path, (reason or error["msg"]) + _as_share(error), error["input"])
+
+
+def _as_share(error: dict[str, Any]) -> str:
+    """Return the fraction that a percentage stands for where at most 1 is allowed, or ""."""
+    limits = error.get("ctx", {})
+    most, given = limits.get("lt", limits.get("le", 2)), error["input"]
+    if most > 1 or not isinstance(given, int | float) or not 1 < given <= 100:
+        return ""
+    return f"; did you mean {given / 100:g}?"

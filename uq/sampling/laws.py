@@ -40,6 +40,19 @@ LAWS: dict[str, type[Law]] = {
 """Name in a study file -> law, in the order in which laws are listed."""
 
 
+_OTHER_NAMES = {
+    "gauss": "normal",
+    "gaussian": "normal",
+    "flat": "uniform",
+    "rectangular": "uniform",
+    "galton": "lognormal",
+    "data": "empirical",
+    "sample": "empirical",
+    "choice": "discrete-choice",
+}
+"""Name of a law elsewhere -> its name here."""
+
+
 def law_of(entry: Any) -> Law:
     """Return the law from an entry of a study file.
 
@@ -77,7 +90,9 @@ def law_fault(error: dict[str, Any], law: type[BaseModel] | None) -> InputFault:
         return InputFault((*path, "distribution"), f"{MISSING} (one of {', '.join(LAWS)})")
     if error["type"] == "union_tag_invalid":
         name = error["ctx"]["tag"]
-        return InputFault((*path, "distribution"), unknown("law", name, LAWS), name)
+        other = _OTHER_NAMES.get(name.lower())
+        problem = f"no such law; did you mean '{other}'?" if other else unknown("law", name, LAWS)
+        return InputFault((*path, "distribution"), problem, name)
     fields = list(law.model_fields) if law else []
     common = list(Law.model_fields)[1:] if law and issubclass(law, Law) else []
     names = [name for name in fields if name not in common] + common  # source is the first

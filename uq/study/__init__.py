@@ -11,12 +11,12 @@ Reading order; each part imports only those above it:
     compiled_cache    numba's cache on disk
     model_files       user files that define a model
     reading           parser of a study file
-    template          template of a study file for a model
     installed_models  installed models, found through entry points, and a hash of their code
     input_checks      consistency checks of inputs with each other
     schema            JSON Schema of a study file, for editors
     definition        study
     variant           a variant of a study: another design and name
+    template          template of a study file for a model
     hints             hints on intervals, indices and bounds that a study cannot give
     row_sampling      rows of a study
 """

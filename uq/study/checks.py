@@ -141,7 +141,12 @@ def _output_faults(
     """Yield a fault if an output does not exist, or is a category although a number is required."""
     if not model.outputs:  # undeclared before rows have run
         return
-    if name not in model.outputs:
+    whole = name.partition("[")[0]
+    if name != whole and whole in model.outputs:
+        dims = [dim for dim in model.outputs[whole].dims if f"{dim}s" in model.setting_names]
+        place = "".join(f"; for one {dim} alone, give no other in '{dim}s'" for dim in dims)
+        yield InputFault(path, f"name the output without its element: '{whole}'{place}", value)
+    elif name not in model.outputs:
         yield InputFault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
     elif settings is not None and name not in model.given(settings).outputs:
         optional = [setting for setting in model.setting_names if model.setting(setting).optional]

@@ -20,10 +20,10 @@ from uq.sampling.law import Law
 from uq.sampling.named_values import read_settings
 from uq.study.changes import change, study_text
 from uq.study.checks import design_faults, model_faults
-from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
+from uq.study.file import NAME, AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
 from uq.study.installed_models import find_model, model_at
-from uq.study.reading import parse, shape_faults, sound_entries
+from uq.study.reading import in_units_of, parse, shape_faults, sound_entries, with_numbers
 from uq.text.literals import read_toml, shown
 from uq.text.numbers import counted
 
@@ -235,15 +235,9 @@ def study_from_text(
     data = parse(text, source)
     if "machine" in data and "study" not in data:
         raise _is_machine(source)
-    faults = shape_faults(data)
-    tables = sound_entries(data, faults)
     lines: list[str] = []
-    columns, more = columns_of_files(tables, folder)
-    entries, spoilt = read_entries(tables, columns)
-    faults += [*more, *spoilt, *dependence_faults(tables, entries)]
-
-    reference = model or tables["study"].get("model")
-    study_model = None
+    reference = model or _model_named(data)
+    study_model, misfits, of_model = None, dict[tuple[str, ...], str](), list[InputFault]()
     if reference is not None:
         try:
             study_model = find_model(reference, folder) if model is None else model_at(model)
@@ -251,7 +245,18 @@ def study_from_text(
             if model is not None:
                 lines += error.lines
             else:
-                faults += [InputFault(("study", "model"), line, reference) for line in error.lines]
+                of_model = [InputFault(("study", "model"), line, reference) for line in error.lines]
+    if study_model is not None:
+        misfits = in_units_of(study_model, data)
+        text = with_numbers(text, data)
+    faults = [
+        fault._replace(problem=misfits.get(tuple(map(str, fault.path)), fault.problem))
+        for fault in shape_faults(data)
+    ]
+    tables = sound_entries(data, faults)
+    columns, more = columns_of_files(tables, folder)
+    entries, spoilt = read_entries(tables, columns)
+    faults += [*more, *spoilt, *dependence_faults(tables, entries), *of_model]
     if study_model is not None:
         faults += model_faults(study_model, data, tables)
         faults += input_faults(study_model, entries)
@@ -291,6 +296,13 @@ def study_from_text(
         dependence=file.dependence,
         imported=imported,
     )
+
+
+def _model_named(data: Mapping[str, Any]) -> str | None:
+    """Return the model that a parsed file names; None if it names none."""
+    study = data.get("study")
+    named = study.get("model") if isinstance(study, dict) else None
+    return named if isinstance(named, str) and re.fullmatch(NAME, named) else None
 
 
 def _is_machine(source: str) -> InputError:

@@ -90,7 +90,8 @@ Share = Annotated[float, Field(gt=0, lt=1)]
 _Text = Annotated[str, Field(pattern=SHAPE)]
 Quantity = Annotated[float, WrapValidator(_quantity, json_schema_input_type=float | _Text)]
 """A number in the unit of the output, or text with a number and its unit."""
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
+NAME = r"^[A-Za-z0-9_-]+$"
+Name = Annotated[str, Field(pattern=NAME, max_length=100)]
 
 
 def _positive(value: float) -> float:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 REPLICATES = 8
 """Advised number of replicates."""
 
+_LARGE_CV = 2.0
 _FEW = 3  # replicates with which an interval is about twice as wide, or more
 _PURE = ("1", "cycles")  # units in which a life may be counted
 _LIFE = re.compile(
@@ -46,11 +47,23 @@ def hints(study: "Study") -> list[str]:
     """
     return [
         *_unknown_units(study.model),
+        *_percentages(study),
         *undeclared_lives(study.model, study.analysis.outputs),
         *_intervals(study),
         *_indices(study),
         *_ends_of_samples(study),
     ]
+
+
+def _percentages(study: "Study") -> Iterator[str]:
+    """Yield a hint for each coefficient of variation that looks like a percentage."""
+    for name, law in study.uncertain.items():
+        cv = getattr(law, "cv", None)
+        if cv is not None and cv >= _LARGE_CV:
+            yield (
+                f"[uncertain.{name}] cv = {cv:g}: the standard deviation is {cv:g} times the mean;"
+                f" if {cv:g} % is meant, write cv = {cv / 100:g}"
+            )
 
 
 def _unknown_units(model: Model) -> Iterator[str]:

@@ -1,18 +1,24 @@
 """Parser of a study file: syntax and schema of its tables, with one error line per fault."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from uq.contract import Model
 from uq.errors import InputError, first_fault_alone, one_line
 from uq.sampling.designs import IMPORTED
 from uq.sampling.input_faults import MISSING, InputFault, fault_of
 from uq.sampling.laws import LAWS, law_fault
+from uq.sampling.named_values import setting_types
+from uq.study.changes import study_text
 from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance, Until
 from uq.text.literals import key as written_key
-from uq.text.literals import read_toml
+from uq.text.literals import read_toml, toml
+from uq.text.quantities import misfit, read_quantity
 
 _MOST_ENTRIES = 2_000  # per table; the time to find faults grows with its square
 
@@ -81,6 +87,99 @@ def _is_meant(missing: InputFault, other: InputFault) -> bool:
     *table, key = missing.path
     beside = missing.problem.startswith(MISSING) and other.path[:-1] == tuple(table)
     return beside and f"did you mean '{key}'?" in other.problem
+
+
+_PLAIN = ("distribution", "source", "times", "level", "equals", "file", "column")
+"""Keys of an uncertain input that are no numbers."""
+
+
+def in_units_of(model: Model, data: dict[str, Any]) -> dict[tuple[str, ...], str]:
+    """Convert quantities with units in [fixed], [uncertain] and [settings], in place.
+
+    Parameters
+    ----------
+    model : Model
+    data : dict
+        Parsed study file. Text with a number and a unit becomes a number in the unit of the
+        parameter or setting; an argument without a unit, such as `cv`, may be in per cent.
+
+    Returns
+    -------
+    dict of tuple of str to str
+        Path -> why the unit of its quantity, which stays as it is, does not fit.
+    """
+    misfits: dict[tuple[str, ...], str] = {}
+
+    def convert(entries: Any, key: Any, units: str, path: tuple[str, ...]) -> None:
+        if isinstance(values := entries[key], list):
+            for place in range(len(values)):
+                convert(values, place, units, (*path, str(place)))
+            return
+        try:
+            entries[key] = _in_unit(values, path[2 if path[0] == "uncertain" else 1], units)
+        except InputError as fault:
+            misfits[path] = str(fault)
+
+    def table(name: str) -> dict[str, Any]:
+        return entries if isinstance(entries := data.get(name), dict) else {}
+
+    for name in {*table("fixed")} & {*model.parameter_names}:
+        convert(table("fixed"), name, model.parameter(name).unit, ("fixed", name))
+    for name in {*table("uncertain")} & {*model.parameter_names}:
+        entry = table("uncertain")[name]
+        if not isinstance(entry, dict):
+            continue
+        law = LAWS.get(str(entry.get("distribution")))
+        for key in [key for key in entry if key not in _PLAIN]:
+            is_pure = "times" in entry or (law is not None and key in law.pure)
+            units = "1" if is_pure else model.parameter(name).unit
+            convert(entry, key, units, ("uncertain", name, key))
+    kinds = setting_types(model)
+    for name in {*table("settings")} & {*kinds}:
+        declared = model.setting(name)
+        if not declared.choices and "str" not in str(kinds[name]):
+            convert(table("settings"), name, declared.unit, ("settings", name))
+    return misfits
+
+
+def _in_unit(value: Any, name: str, units: str) -> Any:
+    """Return a value in a CF unit if it is a quantity with a unit, else as it is."""
+    if not isinstance(value, str):
+        return value
+    try:
+        problem, number = misfit(value, name, units), float(read_quantity(value, units))
+    except ValueError:
+        return value  # no quantity: a fault of the schema
+    if problem:
+        raise InputError(problem)
+    return number
+
+
+def with_numbers(text: str, data: dict[str, Any]) -> str:
+    """Return the text of a study file with the numbers that `in_units_of` has put into its data.
+
+    The text keeps its comments where each quantity is found as it was written.
+    """
+    before = read_toml(text)
+    if before == data:
+        return text
+    for quantity, number in dict(_replaced(before, data)).items():
+        written = rf"\"{re.escape(quantity)}\"|'{re.escape(quantity)}'"
+        text = re.sub(written, toml(number), text)
+    with suppress(ValueError):
+        if read_toml(text) == data:
+            return text
+    return study_text(data)
+
+
+def _replaced(before: Any, after: Any) -> Iterator[tuple[str, float]]:
+    """Yield each text that became a number."""
+    if isinstance(before, str) and not isinstance(after, str):
+        yield before, after
+    elif isinstance(before, dict | list):
+        keys = before if isinstance(before, dict) else range(len(before))
+        for key in keys:
+            yield from _replaced(before[key], after[key])
 
 
 def sound_entries(data: dict[str, Any], faults: list[InputFault]) -> dict[str, dict[str, Any]]:

@@ -11,9 +11,11 @@ from uq.contract import Model
 from uq.errors import InputError
 from uq.indices.methods import fed_by
 from uq.sampling.designs import DESIGNS, MAX_SAMPLES, Design
+from uq.sampling.laws import LAWS
 from uq.sampling.named_values import setting_types
 from uq.study.file import StudyFile
 from uq.study.installed_models import find_model, model_names
+from uq.text.quantities import SHAPE
 
 Schema = dict[str, Any]
 
@@ -35,6 +37,12 @@ def json_schema() -> Schema:
     definitions = schema["definitions"] = schema.pop("$defs")
     uncertain = schema["properties"]["uncertain"]
     laws, tied = uncertain["additionalProperties"]["oneOf"]
+    for law in LAWS.values():
+        properties = definitions[law.__name__]["properties"]
+        definitions[law.__name__]["properties"] = {
+            key: _with_units(argument) for key, argument in properties.items()
+        }
+    schema["properties"]["fixed"]["additionalProperties"] = _with_units({"type": "number"})
     definitions["Law"] = laws
     definitions["Entry"] = {"oneOf": [{"$ref": "#/definitions/Law"}, tied]}
     uncertain["additionalProperties"] = {"$ref": "#/definitions/Entry"}
@@ -149,7 +157,8 @@ def _fixed(model: Model, name: str) -> Schema:
     nominal = model.nominal[name]
     default = {"default": nominal} if isfinite(nominal) else {}  # JSON has no infinity
     limits = _limits(model.parameter(name).bounds)
-    return {"type": "number", **limits, **default, **_texts(model, name)}
+    number = {"type": ["number", "string"], "pattern": SHAPE}  # limits are of numbers alone
+    return {**number, **limits, **default, **_texts(model, name)}
 
 
 def _setting(model: Model, name: str, kind: Any) -> Schema:
@@ -157,8 +166,21 @@ def _setting(model: Model, name: str, kind: Any) -> Schema:
     schema: Schema = TypeAdapter(kind).json_schema()
     if declared.choices:
         schema["enum"] = list(declared.choices)
+    schema = schema if declared.choices or "str" in str(kind) else _with_units(schema)
     schema = _limited(schema, {} if declared.bounds is None else _limits(declared.bounds))
     return {**schema, "title": f"{name} [{declared.unit}]", "description": declared.meaning}
+
+
+def _with_units(schema: Schema) -> Schema:
+    """Return a schema in which every number may be text with a number and its unit."""
+    if schema.get("type") == "number":
+        return {**schema, "type": ["number", "string"], "pattern": SHAPE}
+    parts: Schema = {
+        key: _with_units(schema[key]) for key in ("items",) if isinstance(schema.get(key), dict)
+    }
+    if "prefixItems" in schema:
+        parts["prefixItems"] = [_with_units(item) for item in schema["prefixItems"]]
+    return {**schema, **parts}
 
 
 def _limited(schema: Schema, limits: Schema) -> Schema:

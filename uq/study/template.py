@@ -9,20 +9,24 @@ from typing import Any
 from pydantic import BaseModel
 
 from uq.contract import Model, Parameter
+from uq.errors import InputError
 from uq.sampling.designs import DESIGNS
 from uq.sampling.law import Law
 from uq.sampling.laws import LAWS, law_of
 from uq.sampling.named_values import bounds_of
 from uq.sampling.truncation import law_problem
 from uq.study.file import AnalysisTable, DesignTable
+from uq.study.variant import REPLICATES, refuse_unknown, samples_of
 from uq.text.literals import toml
 
-_DESIGN = {"method": "monte-carlo", "samples": 1000, "seed": 1}
+_DESIGN: dict[str, Any] = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3
 _SOURCE = "example: replace with your own"
 
 
-def template(model: Model, reference: str = "") -> str:
+def template(
+    model: Model, reference: str = "", method: str | None = None, name: str | None = None
+) -> str:
     """Return a commented study file that runs unchanged.
 
     A line that starts with ``#`` and a key is an entry with its default: remove the ``#`` to
@@ -35,20 +39,32 @@ def template(model: Model, reference: str = "") -> str:
     model : Model
     reference : str
         Reference to the model on the command line; it is not part of a study.
+    method : str, optional
+        Design; by default Monte Carlo.
+    name : str, optional
+        Name of the study; by default that of the model.
 
     Returns
     -------
     str
         TOML.
+
+    Raises
+    ------
+    InputError
+        When there is no such design, or it needs a file of rows.
     """
     laws = {name: law_of(law) for name, law in model.uncertain.items()} or _example_laws(model)
     outputs = model.given(model.settings()).outputs
     numbers = [name for name, output in outputs.items() if not output.is_category]
     given_by = [] if reference in ("", model.name) else [f"# run with --model {_line(reference)}"]
     designs = (f"# {name}: {design.meaning}" for name, design in DESIGNS.items())
-    design = _entries(DesignTable, _DESIGN, {"until": {"output": numbers[0], "half_width": 1.0}})
+    chosen = _design(method, len(laws), model.random)
+    design = _entries(DesignTable, chosen, {"until": {"output": numbers[0], "half_width": 1.0}})
     tolerance = {"coverage": 0.95, "confidence": 0.95}
-    headline = {"outputs": list(model.headline), "tolerance": tolerance} if model.headline else {}
+    headline: dict[str, Any] = {"outputs": list(model.headline)} if model.headline else {}
+    if headline and DESIGNS[chosen["method"]].independent:
+        headline["tolerance"] = tolerance
     examples = {
         "outputs": list(outputs),
         "tolerance": tolerance,
@@ -61,7 +77,7 @@ def template(model: Model, reference: str = "") -> str:
 # '#key = value' shows a default: remove the '#' and change it.
 
 [study]
-name = {toml(re.sub(r"[^A-Za-z0-9_-]", "-", model.name) + "-study")}
+name = {toml(name or re.sub(r"[^A-Za-z0-9_-]", "-", model.name) + "-study")}
 {_lines(given_by)}model = {toml(model.name)}
 description = {toml(_line(model.title))}
 
@@ -76,6 +92,20 @@ description = {toml(_line(model.title))}
 {_lines(_settings(model))}
 [analysis]
 {_lines(_entries(AnalysisTable, headline, examples))}"""
+
+
+def _design(method: str | None, inputs: int, random: bool) -> dict[str, Any]:
+    """Return the entries of a design, with replicates where only these give intervals."""
+    if method is None:
+        return _DESIGN
+    refuse_unknown(method)
+    design = DESIGNS[method]
+    if design.imported:
+        raise InputError(f"--design {method}: needs a file of rows; state it in [design]")
+    if design.independent:
+        return _DESIGN | {"method": method}
+    samples = samples_of(design, design.blocks(inputs, False, random), _DESIGN["samples"])
+    return {"method": method, "samples": samples, "replicates": REPLICATES, "seed": 1}
 
 
 def _lines(lines: Iterable[str]) -> str:

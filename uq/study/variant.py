@@ -3,7 +3,7 @@
 from typing import Any
 
 from uq.errors import InputError, nearest
-from uq.sampling.designs import DESIGNS, PLAIN
+from uq.sampling.designs import DESIGNS, PLAIN, Design
 from uq.study.definition import Study
 
 REPLICATES = 8
@@ -42,15 +42,20 @@ def variant(study: Study, method: str | None = None, name: str | None = None) ->
     """
     changes: dict[str, Any] = {}
     if method is not None:
-        if method not in DESIGNS:
-            allowed = ", ".join(DESIGNS)
-            raise InputError(
-                f"--design {method}: no such design{nearest(method, DESIGNS)} (allowed: {allowed})"
-            )
+        refuse_unknown(method)
         changes["design.method"] = method
         changes |= _for_design(study, method)
     changes["study.name"] = name or f"{study.name}-{method or 'copy'}"
     return study.with_changes(changes).text
+
+
+def refuse_unknown(method: str) -> None:
+    """Raise `InputError` if there is no such design."""
+    if method not in DESIGNS:
+        allowed = ", ".join(DESIGNS)
+        raise InputError(
+            f"--design {method}: no such design{nearest(method, DESIGNS)} (allowed: {allowed})"
+        )
 
 
 def _for_design(study: Study, method: str) -> dict[str, Any]:
@@ -65,10 +70,24 @@ def _for_design(study: Study, method: str) -> dict[str, Any]:
         if getattr(asked, bound):
             changes[f"analysis.{bound}"] = None
     group = design.blocks(len(study.uncertain), given.second_order, study.random)
-    rows = _ROWS if design.layout is not PLAIN else given.samples * given.replicates
-    fitting = max(rows // (REPLICATES * group), design.least, _FEWEST)
-    changes["design.samples"] = 2 ** (fitting - 1).bit_length()
+    changes["design.samples"] = samples_of(design, group, given.samples * given.replicates)
     changes["design.replicates"] = REPLICATES
     if given.until is not None and design.layout is not PLAIN:
         changes["design.until"] = None
     return changes
+
+
+def samples_of(design: Design, group: int, plain_rows: int) -> int:
+    """Return a power of two of samples of each replicate.
+
+    Parameters
+    ----------
+    design : Design
+    group : int
+        Rows of a sample.
+    plain_rows : int
+        Wanted number of rows in all, of a design that is not for indices.
+    """
+    rows = _ROWS if design.layout is not PLAIN else plain_rows
+    fitting = max(rows // (REPLICATES * group), design.least, _FEWEST)
+    return int(2 ** (fitting - 1).bit_length())

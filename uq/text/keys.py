@@ -7,9 +7,11 @@ written ``~1``, as in JSON Pointer (RFC 6901).
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from uq.errors import InputError, nearest
+from uq.text.quantities import read_quantity
 
 SUMMARY = "summary"
 
@@ -96,7 +98,17 @@ def taken_apart(key: str, verbs: Mapping[str, Iterable[str]]) -> Key:
                 f"key '{_cut(key)}': no such option of {verb}: {_cut(text)} (allowed: {allowed})"
             )
         options[name] = value
-    return Key(verb, options, tuple(_plain(part) for part in rest.split("/")) if rest else ())
+    path = tuple(_plain(part) for part in rest.split("/")) if rest else ()
+    return Key(verb, options, tuple(map(_as_number, ("", *path), path)))
+
+
+def _as_number(before: str, part: str) -> str:
+    """Return a threshold with its unit, ``24 hours``, as the JSON has it: ``86400.0``."""
+    if before != "thresholds":
+        return part
+    with suppress(ValueError):
+        return repr(float(read_quantity(part)))
+    return part
 
 
 def value_at(whole: Any, path: Path) -> Any:

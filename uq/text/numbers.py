@@ -173,8 +173,13 @@ def rows_in_words(rows: float) -> str:
     """Return a number of rows, rounded up to two digits; a power of ten if very large."""
     if rows > HUGE:
         return f"{rows:.0e}".replace("e+", "e")
-    digit = 10 ** max(floor(log10(rows)) - 1, 0)
-    return grouped(ceil(rows / digit) * digit)
+    return grouped(rounded_up(rows))
+
+
+def rounded_up(count: float) -> int:
+    """Return the next count of two digits: 4 200 for 4 130."""
+    digit = 10 ** max(floor(log10(count)) - 1, 0)
+    return ceil(count / digit) * digit
 
 
 def counted(count: int, singular: str, plural: str = "") -> str:

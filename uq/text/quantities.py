@@ -23,6 +23,7 @@ _DECODED = {word: name for name, word in _TIMES.items()} | {
     "microseconds": "us",
     "nanoseconds": "ns",
 }
+_OTHER_TIMES = {"y": "a", "yr": "a", "hr": "h"}
 _DEGREES = ("°", "deg", "degree", "degrees")
 
 _NUMBER = r"[-+]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][-+]?[0-9]{1,3})?"
@@ -215,6 +216,7 @@ def _taken_apart(text: str) -> tuple[Fraction, int, Dimensions, str]:
 
 def _of_symbol(symbol: str) -> tuple[str, Fraction, str]:
     """Return unit without prefix, size and name of one factor of a unit."""
+    symbol = _OTHER_TIMES.get(symbol, symbol)
     for name, word in _TIMES.items():
         if symbol in (name, word, word.removesuffix("s")):
             return "s", Fraction(_SECONDS[name]), name

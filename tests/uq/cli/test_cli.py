@@ -82,6 +82,25 @@ def test_init_gives_a_study_that_checks_and_runs(uq, folder):
     assert everything(folder) == ["linear.toml"]
 
 
+def test_check_shows_thresholds_and_values_that_do_not_vary(uq, folder):
+    folder.joinpath("pads.toml").write_text(
+        """
+        study = {name = "pads", model = "exponential-wear"}
+        design = {method = "monte-carlo", samples = 200}
+        fixed = {depth = 2e-3}
+        uncertain = {rate = {distribution = "lognormal", mean = 1e-9, cv = 0.2}}
+        [analysis]
+        thresholds = {life = ["24 hours", "2 days"]}
+        tolerance = {coverage = 0.9, confidence = 0.95}
+        """
+    )
+    text = " ".join(uq("check", "pads.toml").out.split())
+    assert "life: 24 hours, 2 days" in text
+    assert "cover 90 % with 95 % confidence" in text
+    assert "Fixed values, of the study depth = 2 mm" in text
+    assert "Fixed values, nominal threshold = 0 m s⁻¹" in text
+
+
 def test_check_says_what_would_run(uq, write_study):
     path = write_study(method="saltelli", samples=16, replicates=3)
     ended = uq("check", path)

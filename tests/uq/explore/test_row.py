@@ -92,6 +92,11 @@ def test_lives_are_ordered_ended_censored_never():
     assert lowest.choice.words == "the lowest life; 1 row was censored earlier"
     assert row_again(Result(ds.isel(row=[2, 3, 5])), lowest="life").number == 3
     assert row_again(Result(ds.isel(row=[2, 4, 6])), lowest="life").number == 2
+    highest = row_again(Result(ds.isel(row=[0, 2])), highest="life")
+    assert highest.choice.words == "the highest life" and highest.number == (
+        0 if LIVES[0] > LIVES[2] else 2
+    )
+    assert row_again(Result(ds), highest="life").number in np.flatnonzero(np.isinf(LIVES))
     with pytest.raises(InputError, match="no row has a value of 'life'"):
         row_again(Result(ds.isel(row=[4, 6])), lowest="life")
 
@@ -128,7 +133,7 @@ def test_the_row_near_a_quantile_of_lives_may_never_end():
 @pytest.mark.parametrize(
     ("chosen", "words"),
     [
-        ({}, "give one of: the number of a row, --lowest, --near-quantile"),
+        ({}, "give one of: the number of a row, --lowest, --highest, --near-quantile"),
         ({"number": 1, "lowest": "angle"}, "give one of: the number of a row"),
         ({"number": 64}, "no such row: 64 (allowed: 0 to 63)"),
         ({"number": -1}, "no such row: -1 (allowed: 0 to 63)"),

@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from computed import asking, computed, kinds, linear, study_of, with_output, with_status
+from nested_studies import nested_result
 
 import uq as api
 from benchmarks.cards import cards_on_page
+from uq.assess.answer.sufficiency import needed, rounded_size, size_for
 from uq.assess.answer.wording import called_together
 from uq.render.card import SHORT, WIDTH, card, cause_columns, lines_of
 from uq.result.result import Result
@@ -142,9 +144,50 @@ def test_rows_are_called_what_the_model_calls_them():
     assert "1 pump, 0 failed" in str(named)
 
 
-@pytest.mark.parametrize(("index", "header"), [("pawn", "pawn, 0 to 1"), ("mu_star", "mu_star")])
-def test_only_an_index_between_0_and_1_is_said_to_be_one(shipped, index, header):
-    assert cause_columns(replace(card(shipped).card, index=index))[0][1][0] == header
+@pytest.mark.parametrize("index", ["pawn", "delta", "KS", "hsic", "mu_star", "shapley"])
+def test_an_index_is_described_in_words_and_its_range_where_it_has_one(shipped, index):
+    changed = replace(card(shipped).card, index=index, share_of="")
+    words, more = cause_columns(changed)[0][1]
+    assert re.fullmatch("[A-Z]?[a-z]+ ?[a-z]*", words) and words != index
+    assert more.startswith("0 to 1") == (index in ("pawn", "delta", "KS", "hsic"))
+
+
+def test_a_short_card_says_which_interval_it_shows(shipped):
+    lines = str(card(shipped)).splitlines()
+    assert len(lines) <= SHORT and sum("(95 % interval)" in line for line in lines) == 1
+
+
+def test_chance_comes_with_the_share_that_it_explains():
+    levels = {"x1": "own", "x2": "own", "x3": "chance", "x4": "chance"}
+    ds = nested_result(levels=levels, samples=300, units=1)
+    (step,) = (step for step in card(ds).card.next if "expect little" in step)
+    share = re.fullmatch(r"expect little of tolerances: chance explains (8\d\.\d) %", step)
+    assert float(share[1]) == pytest.approx(100 * 25 / 30, abs=5)
+
+
+def test_an_answer_whose_main_cause_is_assumed_is_no_prediction():
+    ds = linear(samples=1000)
+    ds["x4"].attrs["source"] = "assumed: a guess"
+    study = ds.attrs["study"].replace("x4 = {", 'x4 = {source = "assumed: a guess", ')
+    shown = card(asking(ds.assign_attrs(study=study), outputs=["y"])).card
+    assert shown.warning == "not a prediction: x4 contributes most and is assumed"
+    assert shown.warning in shown.json["checks"]
+    assert any("not a prediction" in line.text and line.warns for line in lines_of(shown))
+
+
+@pytest.mark.parametrize(("samples", "factor"), [(32, 1.1), (32, 2.0), (32, 5.0)])
+def test_more_rows_are_of_a_size_that_the_design_allows(samples, factor):
+    result = Result(linear("saltelli", samples=samples, replicates=4))
+    rows = size_for(factor, result)
+    wanted = rows * samples // len(result)
+    assert result.design.size_problem(wanted) is None and rows >= factor * len(result)
+    assert rounded_size(rows, result) == (rows, wanted)
+    assert f"({wanted} samples)" in needed(factor, result)
+
+
+def test_more_independent_rows_are_rounded_up():
+    result = Result(linear(samples=1000))
+    assert rounded_size(size_for(4.123, result), result) == (4200, 4200)
 
 
 def shown_with(card, **changes):
@@ -206,7 +249,98 @@ def test_each_of_several_inputs_has_its_share_and_no_check_is_lost(shipped):
     cause = cause._replace(contribution=replace(cause.contribution, indices=indices))
     checks = (
         "too few rods: the share that fail within 24 hours is uncertain by ±2.5 percentage points",
-        "89.4 % have numerical errors above 5 % (bound then 3.02 days)",
+        "89.4 % have numerical errors above 5 %",
     )
     text = re.sub(r"\s+", " ", " ".join(shown_with(base, causes=(cause,), checks=checks)))
-    assert "28 + 11 + 11 %" in text and "bound then 3.02 days" in text
+    assert "28 + 11 + 11 %" in text and "89.4 % have numerical errors above 5 %" in text
+
+
+def with_numerical_errors(relative, **analysis):
+    """Return lives of a Monte Carlo sample, each with an error of this fraction of it."""
+    ds = life(np.random.default_rng(5).lognormal(10, 1, 400), **analysis)
+    error = ds["life"].copy(data=relative * ds["life"].values).assign_attrs(kind="value")
+    return ds.assign(life_error=error)
+
+
+def test_the_bound_with_numerical_errors_stands_beside_the_bound():
+    asked = {"coverage": 0.95, "confidence": 0.95}
+    ds = with_numerical_errors(0.3, tolerance=asked)
+    shown = card(ds)
+    bound, with_errors, *_ = shown.card.headline
+    assert with_errors.leads and bound.label == "95/95 life"
+    assert with_errors.estimate.value == pytest.approx(0.7 * bound.estimate.value, rel=1e-12)
+    assert shown.card.json["headline"][1]["label"] == "95/95 life with numerical errors"
+    lines = str(shown).splitlines()
+    (first,) = (i for i, line in enumerate(lines) if "95/95 life" in line)
+    assert re.match(
+        "  with errors  +[0-9.]+ h    all lives less their numerical errors$",
+        lines[first + 1],
+    )
+    exact = card(with_numerical_errors(1e-9, tolerance=asked))
+    assert "numerical" not in str(exact)
+
+
+def test_a_quantile_in_place_of_a_bound_comes_with_its_numerical_errors():
+    ds = linear("saltelli", samples=64, replicates=8)
+    ds = asking(ds, outputs=["y"], wanted={"y": "above"})
+    ds = with_output(ds, "y_error", np.full(ds.sizes["row"], 0.2))
+    quantile, with_errors = card(ds).card.headline[:2]
+    assert with_errors.label == "5 % quantile with numerical errors"
+    assert with_errors.estimate.value == pytest.approx(quantile.estimate.value - 0.2, rel=1e-9)
+
+
+def test_too_few_rows_are_too_few_for_a_result_even_if_the_causes_state_the_reason():
+    shown = card(asking(linear(samples=100), outputs=["y"])).card
+    assert shown.no_causes.startswith("the ranking of the inputs is not settled: ")
+    assert "too few runs: the ranking of the inputs is not settled" in shown.checks
+
+
+def test_more_accurate_rows_are_advised_with_the_setting_that_makes_them():
+    ds = with_numerical_errors(0.3)
+    ds["life"].attrs |= {"accuracy": 0.05, "accuracy_setting": "accuracy"}
+    shown = card(ds).card
+    (step,) = (step for step in shown.next if "not more runs" in step)
+    value = re.fullmatch(r"set accuracy = (0\.0\d+), not more runs", step)
+    assert float(value[1]) <= 0.025
+    assert not any("too few" in check for check in shown.checks)
+    del ds["life"].attrs["accuracy_setting"]
+    assert "use finer settings, not more runs" in card(ds).card.next
+
+
+def test_a_missing_column_of_half_the_scatter_has_a_reason():
+    regimes = card(kinds(samples=256, analysis={"outputs": ["regime", "work"]})).card
+    if regimes.causes:
+        assert regimes.not_halved == "not estimated for regimes"
+    law = {"distribution": "discrete-choice", "values": [1e-9, 2e-9, 3e-9]}
+    tables = {
+        "study": {"name": "pads", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 400},
+        "uncertain": {"rate": law},
+    }
+    shown = card(computed(study_of(tables)))
+    assert shown.card.causes and shown.card.causes[0].tightened is None
+    assert "half scatter: none, the law of rate has no width to halve" in str(shown)
+
+
+def test_half_the_scatter_is_shown_even_if_no_tolerance_is_advised():
+    """Halving a cause that hardly moves the quantile is a result, too."""
+    ds = linear("saltelli", samples=32, replicates=4)
+    shown = card(asking(ds, outputs=["y"], wanted={"y": "below"})).card
+    assert shown.causes and not any("tighten" in step for step in shown.next)
+    assert all(cause.tightened.statistic == "the 95 % quantile" for cause in shown.causes)
+
+
+def test_a_law_of_few_values_and_a_fixed_value_without_source_are_pointed_out():
+    values = [1e-9 * (1 + 0.1 * i) for i in range(12)]
+    tables = {
+        "study": {"name": "pads", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 100},
+        "fixed": {"depth": 2e-3},
+        "uncertain": {"rate": {"distribution": "empirical", "values": values}},
+    }
+    clause = "the law of rate rests on 12 values; depth fixed without a source"
+    shown = card(computed(study_of(tables)))
+    assert f"! {clause}" in str(shown) and clause in shown.card.json["checks"]
+    tables["uncertain"]["rate"]["values"] = [1e-9 * (1 + 0.01 * i) for i in range(100)]
+    del tables["fixed"]
+    assert card(computed(study_of(tables))).card.sources == ""

@@ -276,3 +276,16 @@ def test_a_result_of_which_no_row_was_kept_is_refused_in_one_line(ask):
     with pytest.raises(InputError) as refused:
         ask(ds)
     assert str(refused.value) == "this result has no rows"
+
+
+def test_an_output_with_numerical_errors_names_the_setting_that_reduces_them():
+    x = {"distribution": "uniform", "lower": 2e-4, "upper": 3e-4}
+    tables = {
+        "study": {"name": "rods", "model": "beam"},
+        "design": {"method": "monte-carlo", "samples": 1},
+        "uncertain": {"initial_gap": x},
+        "settings": {"depths": [1e-6], "accuracy": 1.0},
+        "analysis": {"outputs": ["first_time_to_depth"]},
+    }
+    result = Result(computed(study_of(tables)))
+    assert result.outputs["first_time_to_depth"].accuracy == "accuracy"

@@ -181,3 +181,16 @@ def test_whatever_stands_anywhere_is_read_or_refused_in_lines(place, value, whol
         for line in error.lines:
             assert line.startswith("x.toml: ")
             assert "\n" not in line
+
+
+def test_an_element_in_place_of_an_output_is_answered_with_the_output_and_how_to_choose_it():
+    text = """
+    study = {name = "rods", model = "beam"}
+    design = {method = "monte-carlo", samples = 100}
+    uncertain = {initial_gap = {distribution = "uniform", lower = 2e-4, upper = 3e-4}}
+    [analysis]
+    outputs = ["first_time_to_depth[depth=0.00025]"]
+    """
+    (line,) = lines(text=text)
+    assert "name the output without its element: 'first_time_to_depth'" in line
+    assert line.endswith("for one depth alone, give no other in 'depths'")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from sample_models import MOUNTED
 
-from uq.study.definition import study_from_text
+from uq.study.definition import load_study, study_from_text
 from uq.study.installed_models import find_model, model_names
 from uq.study.row_sampling import row_block
 from uq.study.template import template
@@ -64,3 +64,32 @@ def test_every_parameter_is_explained(name):
         declared = model.parameter(parameter)
         assert declared.meaning in text
         assert f"[{declared.unit}]" in text
+
+
+@pytest.mark.parametrize("method", ["monte-carlo", "sobol", "saltelli", "morris", "fast"])
+@pytest.mark.parametrize("model", ["beam", "exponential-wear"])
+def test_a_new_study_may_have_a_name_and_a_design(uq, folder, model, method):
+    folder.joinpath("a.toml").write_text(
+        uq("init", model, "--name", "mine", "--design", method).out
+    )
+    study = load_study("a.toml")
+    assert (study.name, study.design.method) == ("mine", method)
+    assert study.design.replicates == (1 if method == "monte-carlo" else 8)
+    assert (study.analysis.tolerance is None) == (
+        method != "monte-carlo" or not study.model.headline
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        (("beam", "-o", "a.toml"), "uq init prints the study: uq init beam > a.toml"),
+        (("beam", "--design", "sobl"), "--design sobl: no such design; did you mean 'sobol'?"),
+        (("beam", "--design", "imported"), "--design imported: needs a file of rows"),
+        (("--machine", "pad", "--name", "x"), "uq init: --design and --name are of a study"),
+    ],
+)
+def test_what_cannot_be_written_is_answered_with_what_can(uq, folder, given, line):
+    ended = uq("init", *given)
+    assert ended.code == 2 and ended.err.startswith(line)
+    assert not [*folder.iterdir()]

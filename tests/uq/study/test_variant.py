@@ -41,7 +41,7 @@ def test_the_command_prints_a_study_that_can_be_run(uq, folder):
     [
         (("--from", "no.toml"), "no.toml: no such file"),
         (("--from", "{}", "--design", "saltell"), "did you mean 'saltelli'?"),
-        (("beam", "--design", "saltelli"), "go with --from STUDY"),
+        (("beam", "--model", "pad.py"), "goes with --from STUDY"),
         (("beam", "--from", "{}"), "give one of MODEL, --from STUDY and --machine NAME"),
     ],
 )

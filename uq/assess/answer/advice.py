@@ -1,7 +1,7 @@
 """Advice by rules: mend, add rows, measure, tighten, or nothing."""
 
 from collections.abc import Iterator, Sequence
-from math import ceil, isfinite, isinf, isnan
+from math import isfinite, isinf, isnan
 
 from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution
@@ -9,7 +9,7 @@ from uq.assess.answer.events import Event
 from uq.assess.answer.leading_level import VarianceComponents
 from uq.assess.answer.piece_of_advice import Advice
 from uq.assess.answer.quantities import Quantity
-from uq.assess.answer.sufficiency import MOST, SampleSizeAssessment, bounds_unsettled, needed
+from uq.assess.answer.sufficiency import SampleSizeAssessment, bounds_unsettled, needed, size_for
 from uq.assess.answer.tightening import tighten
 from uq.assess.answer.wording import ASSUMED, CHOSEN, called, called_together, mark_of, share_text
 from uq.assess.findings import Findings
@@ -211,5 +211,5 @@ def _add_rows(result: Result, enough: SampleSizeAssessment) -> Iterator[Advice]:
     yield Advice(
         "rows",
         f"Compute {needed(factor, result)} instead of {grouped(rows)}: {clause}{more}.",
-        rows=ceil(min(factor, MOST) * rows),
+        rows=size_for(factor, result),
     )

@@ -183,7 +183,7 @@ ALIKE = 0.5
 _STEPS = (0.1, 0.01, 0.001)
 
 
-_WITHIN = 4.0  # standard deviations that a step may span
+_WITHIN = 2.0  # standard deviations that a step may span: a change within the scatter of the input
 
 
 def groups_of(result: Result, measured: list[Measured]) -> Iterator[list[Measured]]:

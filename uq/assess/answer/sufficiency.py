@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from math import inf, isfinite, isnan
+from math import ceil, floor, inf, isfinite, isnan, log10
 from typing import Any
 
 from uq.assess.answer.events import Event
@@ -17,7 +17,8 @@ from uq.assess.findings import Findings
 from uq.assess.summary import why_no_intervals
 from uq.result.result import Result
 from uq.result.variables import is_error
-from uq.text.numbers import capitalized, percent, rows_in_words
+from uq.sampling.designs import DESIGNS
+from uq.text.numbers import capitalized, grouped, percent, rounded_up, rows_in_words
 
 SHARE = 0.2
 """A probability is settled if its half-width is at most this fraction of the rarer side ..."""
@@ -131,6 +132,8 @@ class SampleSizeAssessment:
         Errors of the subject, if the numerical error exceeds the sampling error.
     unit : DisplayUnit
         Unit of these errors.
+    setting : str
+        The setting and its value that reduce the numerical error to the sampling error, or "".
     again : Fact
         Prediction interval for another seed.
     of_share : bool
@@ -144,6 +147,7 @@ class SampleSizeAssessment:
     besides: tuple[Shortfall, ...] = ()
     errors: Errors | None = None
     unit: DisplayUnit = field(default_factory=DisplayUnit)
+    setting: str = ""
     again: Fact = field(default_factory=lambda: Fact({}))
     of_share: bool = False
     others: tuple[str, ...] = ()
@@ -191,8 +195,9 @@ class SampleSizeAssessment:
         numerical, sampling = (
             self.unit.text(error) for error in (self.errors.numerical, self.errors.sampling)
         )
+        how = self.setting or "finer settings or longer averages"
         return (
-            "Reduce numerical error (finer settings or longer averages) before adding rows: it may"
+            f"Reduce numerical error ({how}) before adding rows: it may"
             f" change the {self.errors.estimate} by {numerical}, sampling by {sampling}."
         )
 
@@ -236,6 +241,7 @@ def enough_of(
         least_settled_first(besides),
         errors,
         about[0].range.unit if about and about[0].range is not None else DisplayUnit(),
+        _finer_setting(result, about[0], errors) if errors is not None else "",
         _prediction(about, regimes),
         bool(regimes) or any(quantity.first is not None for quantity in about),
     )
@@ -268,6 +274,20 @@ def _errors(findings: Findings, quantity: Quantity) -> Errors | None:
     return errors if errors.warning else None
 
 
+def _finer_setting(result: Result, quantity: Quantity, errors: Errors) -> str:
+    """Return the setting of the accuracy with a value that equals the sampling error; "" if none.
+
+    At most half the present value, since errors are rarely as large as the accuracy allows.
+    """
+    setting = result.outputs[quantity.output].accuracy
+    asked = None if quantity.own_error is None else quantity.own_error.members["accuracy"]
+    if not setting or not asked or not isfinite(errors.sampling):
+        return ""
+    finer = asked * min(errors.sampling / errors.numerical, 0.5)
+    digit = 10.0 ** floor(log10(finer))
+    return f"set {setting} = {floor(finer / digit) * digit:.1g}"
+
+
 def settled(clause: str, factor: float, result: Result) -> str:
     """Return an unsettled result and the sample size that would settle it."""
     return f"{clause}; {needed(factor, result)} in total would settle it."
@@ -276,7 +296,38 @@ def settled(clause: str, factor: float, result: Result) -> str:
 def needed(factor: float, result: Result) -> str:
     """Return so many times the rows in words, with samples if these have several rows."""
     many = "more than" if factor > MOST else "about"
-    factor = min(factor, MOST)
-    rows = f"{many} {rows_in_words(factor * result.dataset.sizes['row'])} rows"
-    samples = rows_in_words(factor * int(result.dataset.attrs["samples"]))
-    return f"{rows} ({samples} samples)" if result.is_nested else rows
+    rows, samples = rounded_size(size_for(factor, result), result)
+    of_samples = f" ({grouped(samples)} samples)" * (rows != samples)
+    return f"{many} {rows_in_words(rows) if rows == samples else grouped(rows)} rows{of_samples}"
+
+
+def size_for(factor: float, result: Result) -> int:
+    """Return a number of rows that the design allows, for a factor on the rows.
+
+    Parameters
+    ----------
+    factor : float
+        Limited to `MOST`.
+    result : Result
+
+    Returns
+    -------
+    int
+        At least the factor times the rows of the result. A sample, of which some designs need a
+        power of two, has a row of every replicate and block of the design.
+    """
+    samples = int(result.dataset.attrs["samples"])
+    rows_of_a_sample = max(len(result) // samples, 1)
+    wanted = ceil(min(factor, MOST) * len(result) / rows_of_a_sample)
+    if DESIGNS[result.design_name].power_of_two:
+        wanted = 1 << (wanted - 1).bit_length()
+    return wanted * rows_of_a_sample
+
+
+def rounded_size(rows: int, result: Result) -> tuple[int, int]:
+    """Return a number of rows and its samples, rounded up to two digits if the design allows it."""
+    rows_of_a_sample = max(len(result) // int(result.dataset.attrs["samples"]), 1)
+    samples = ceil(rows / rows_of_a_sample)
+    if not DESIGNS[result.design_name].power_of_two:
+        samples = rounded_up(samples)
+    return samples * rows_of_a_sample, samples

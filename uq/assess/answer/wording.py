@@ -9,8 +9,10 @@ from uq.assess.fact import Fact
 from uq.assess.targets import split_name
 from uq.result.element import Element
 from uq.result.result import Result
+from uq.sampling.listed_values import Empirical
 from uq.stats.estimate import Estimate
 from uq.study.file import Tied
+from uq.study.input_checks import laws_of
 from uq.text.numbers import (
     capitalized,
     compared,
@@ -64,8 +66,30 @@ def mark_of(result: Result, name: str) -> str:
 
 
 def _states_source(result: Result, name: str) -> bool:
-    laws = result.study.uncertain
-    return name not in laws or bool(laws[name].source)
+    """Return whether a parameter has a source: a value in [fixed] replaces the sourced one."""
+    study = result.study
+    return (
+        bool(study.uncertain[name].source) if name in study.uncertain else name not in study.fixed
+    )
+
+
+FEW_VALUES = 100
+"""An empirical law of fewer values is itself an estimate, which no interval allows for."""
+
+
+def few_values(result: Result) -> dict[str, int]:
+    """Return the empirical laws of few values: parameter -> number of values."""
+    counts = {
+        name: len(law.values or ())
+        for name, law in laws_of(str(result.dataset.attrs["study"])).items()
+        if isinstance(law, Empirical) and name in result.dataset.variables
+    }
+    return {name: count for name, count in counts.items() if count < FEW_VALUES}
+
+
+def without_source(result: Result) -> list[str]:
+    """Return the parameters whose values in [fixed] replace the nominal ones, without a source."""
+    return [name for name in result.study.fixed if name in result.dataset.variables]
 
 
 class DisplayUnit(NamedTuple):
@@ -171,6 +195,14 @@ def scale_warning(assumed: Sequence[str]) -> str:
         return ""
     how = "sets the scale and is assumed" if len(assumed) == 1 else "set the scale and are assumed"
     return f"not a prediction: {called_together(assumed)} {how}"
+
+
+def cause_warning(assumed: Sequence[str]) -> str:
+    """Return the clause on assumed inputs that contribute most to the scatter; "" without any."""
+    if not assumed:
+        return ""
+    how = "contributes most and is" if len(assumed) == 1 else "contribute most and are"
+    return f"not a prediction: {called_together(assumed)} {how} assumed"
 
 
 def joined(words: Sequence[str], last: str = "and") -> str:
@@ -282,8 +314,9 @@ def assumptions(result: Result) -> dict[str, Fact]:
     Returns
     -------
     dict of str to Fact
-        ``assumed_laws``, ``assumed_values``, ``laws_without_source`` and ``laws_without_quality``,
-        as far as there are any: the ``inputs``, and the number that they are ``of``.
+        ``assumed_laws``, ``assumed_values``, ``laws_without_source``, ``laws_without_quality``,
+        ``values_without_source`` and ``laws_of_few_values``, as far as there are any: the
+        ``inputs``, and the number that they are ``of``.
     """
     study = result.study.uncertain
     tied = [name for name, law in study.items() if isinstance(law, Tied)]
@@ -296,6 +329,7 @@ def assumptions(result: Result) -> dict[str, Fact]:
         if not how and "initial" not in result.dataset[name].attrs
     ]
     values = [name for name, how in fixed.items() if how == ASSUMED]
+    empirical, given = few_values(result), without_source(result)
     groups = {
         "assumed_laws": (f"{_counted_with_verb(assumed, laws, 'law')} assumed", assumed, laws),
         "assumed_values": (
@@ -311,6 +345,12 @@ def assumptions(result: Result) -> dict[str, Fact]:
         "laws_without_quality": (
             "Laws whose source does not say given, measured, inferred, fitted, assumed or chosen",
             [name for name in unstated if _states_source(result, name)],
+            laws,
+        ),
+        "values_without_source": ("Fixed values without a source", given, fixed),
+        "laws_of_few_values": (
+            f"Laws taken from fewer than {FEW_VALUES} values as if these were all",
+            [*empirical],
             laws,
         ),
     }

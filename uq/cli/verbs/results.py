@@ -86,6 +86,14 @@ def row(
             autocompletion=completion.complete_output,
         ),
     ] = None,
+    highest: Annotated[
+        str | None,
+        typer.Option(
+            metavar="OUTPUT",
+            help="The row with the highest value.",
+            autocompletion=completion.complete_output,
+        ),
+    ] = None,
     near_quantile: Annotated[
         tuple[float, str] | None,
         typer.Option(metavar="P OUTPUT", help="The row closest to this quantile."),
@@ -99,7 +107,7 @@ def row(
     """Show one row, and compute it again."""
     from uq.cli import status as single
 
-    return single.row(result, number, lowest, near_quantile, plot, model, json)
+    return single.row(result, number, lowest, highest, near_quantile, plot, model, json)
 
 
 def summary(

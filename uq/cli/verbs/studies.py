@@ -78,18 +78,24 @@ def init(
         str | None,
         typer.Option(
             metavar="METHOD",
-            help="With --from: another design.",
+            help="Another design.",
             autocompletion=completion.complete_design,
         ),
     ] = None,
-    name: Annotated[str | None, typer.Option(metavar="NAME", help="With --from: its name.")] = None,
+    name: Annotated[str | None, typer.Option(metavar="NAME", help="Name of the study.")] = None,
     own_model: given.ModelReference = None,
+    output: Annotated[str | None, typer.Option("-o", "--output", hidden=True)] = None,
 ) -> None:
     """Print a study file to edit, or write a new machine."""
     if [model, machine, from_].count(None) != 2:
         raise InputError("uq init: give one of MODEL, --from STUDY and --machine NAME")
-    if from_ is None and (design or name or own_model):
-        raise InputError("uq init: --design, --name and --model go with --from STUDY")
+    if output is not None:
+        asked = f"--from {from_}" if from_ else model or "MODEL"
+        raise InputError(f"uq init prints the study: uq init {asked} > {output}")
+    if machine is not None and (design or name):
+        raise InputError("uq init: --design and --name are of a study, not of a machine")
+    if from_ is None and own_model:
+        raise InputError("uq init: --model goes with --from STUDY; else it is the argument")
     if from_ is not None:
         from uq.execution.loading import load_study
         from uq.study.variant import variant
@@ -105,7 +111,7 @@ def init(
     from uq.execution.loading import load_model
     from uq.study.template import template
 
-    print(template(load_model(model), model), end="")
+    print(template(load_model(model), model, design, name), end="")
 
 
 def check(study: given.StudyFile, model: given.ModelReference = None) -> None:

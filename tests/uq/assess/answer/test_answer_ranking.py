@@ -8,7 +8,9 @@ import pytest
 from answered import numbers
 from computed import (
     asking,
+    computed,
     linear,
+    study_of,
     with_output,
 )
 
@@ -65,7 +67,10 @@ def test_an_index_that_is_not_settled_ranks_nothing_and_says_what_would_settle_i
     assert conclusions.lead.ranking.leader is None and conclusions.lead.ranking.rows_factor > 1
     assert "not settled" in conclusions.lead.ranking.sentence
     (rows,) = [advice for advice in conclusions.advice if advice.rule == "rows"]
-    match = re.match(r"Compute (?:about|more than) ([\d ]+) rows instead of (\d+): ", rows.text)
+    match = re.match(
+        r"Compute (?:about|more than) ([\d ]+) rows \([\d ]+ samples\) instead of (\d+): ",
+        rows.text,
+    )
     assert int(match[1].replace(" ", "")) >= rows.rows - 1 > int(match[2])
 
 
@@ -102,3 +107,14 @@ def test_an_angle_beyond_a_limit_on_either_side_is_not_ranked_by_what_single_inp
     by_kernel = sensitivities(Result(ds), "hsic-target", event.name).targets[event.name]
     hsic = by_kernel.indices.values[HSIC]
     assert min(index.value for index in hsic.values()) > by_kernel.indices.nulls[HSIC].limit
+
+
+@pytest.mark.parametrize(("cv", "step"), [(0.2, "10 %"), (0.03, "1 %"), (0.004, "0.1 %")])
+def test_an_input_is_changed_within_its_scatter(cv, step):
+    tables = {
+        "study": {"name": "pads", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 200},
+        "uncertain": {"rate": {"distribution": "lognormal", "mean": 1e-9, "cv": cv}},
+    }
+    (change,) = answer(computed(study_of(tables))).lead.ranking.leader.changes
+    assert change.step == step

@@ -6,10 +6,11 @@ import re
 import time
 from pathlib import Path
 
+import answered
 import numpy as np
 import pytest
 from command_line import strict_json
-from computed import computed, kinds, linear, with_output
+from computed import asking, computed, kinds, linear, with_output
 from learnt_studies import measured, wear
 from nested_studies import nested
 
@@ -424,3 +425,10 @@ def test_numbers_of_the_answer_are_those_of_its_sentences_and_have_keys(uq, writ
     assert entry.items() <= again.items() and again["equal"]
     quantile = whole["outputs"]["life"]["quantiles"]["0.5"]["value"]
     assert entry["median"] == quantile == again["median"]
+
+
+def test_a_threshold_may_be_given_with_its_unit():
+    ds = answered.lifetime()[0]
+    ds = asking(ds, outputs=["life"], thresholds={"life": "24 hours"})
+    with_unit = traced(Result(ds), "outputs/life/thresholds/24 hours/below").numbers
+    assert with_unit == traced(Result(ds), "outputs/life/thresholds/86400.0/below").numbers
