@@ -1,5 +1,6 @@
 """The card of a result: the few numbers, causes, checks and next steps that fit on a screen."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -330,17 +331,19 @@ def _next(result: Result, answer: Answer) -> Iterator[str]:
                 yield f"{finer}, not more {result.row_name[1]}"
             case "keep":
                 place = entry.place.replace("between ", "in ").replace(" and ", " to ")
-                yield f"keep {words} {place}"
+                there = re.sub(r" \([^)]*\)| in magnitude", "", entry.there)
+                yield f"keep {words} {place}: there {there}"
             case "nothing" if len(advice) == 1:
                 yield "nothing: the question is settled"
 
 
 def _chance(answer: Answer) -> str:
-    """Return the share of the variance that chance explains."""
+    """Return the share of the variance that chance explains, or the starts, and of what."""
     leader = None if answer.levels is None else answer.levels.leader
-    if leader is None:
+    if answer.levels is None or leader is None:
         return "chance decides"
-    return f"{leader.words} {leader.explains} {percent(leader.share.value)}"
+    share = f"{percent(leader.share.value)} of {answer.levels.variance}"
+    return f"{leader.words} {leader.explains} {share}"
 
 
 def _more_rows(result: Result, rows: int) -> str:

@@ -147,7 +147,7 @@ def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Head
         label=line.label + WITH_ERRORS,
         estimate=Estimate(moved),
         towards=towards,
-        note=f"all {noun_of(tolerance_bound)} {by} their numerical errors",
+        note=f"the same, {noun_of(tolerance_bound)} {by} their numerical errors",
     )
 
 

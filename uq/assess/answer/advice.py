@@ -180,17 +180,18 @@ def _keep(result: Result, answer: Answer) -> Iterator[Advice]:
         return
     if local.low > overall.high if more else local.high < overall.low:
         kept, key_name = event.part(place), "decided_by"
-        result_there = f"{share_text(local)} do there"
+        few, averaged = share_text(local), ""
         if event.limit is not None and not event.limit.why:
             limit, key_name = event.limit, "limit"
-            kept, result_there = limit.place, f"{limit.few} do there{limit.averaged}"
+            kept, few, averaged = limit.place, limit.few, limit.averaged
         yield Advice(
             "keep",
             f"To {'increase' if more else 'reduce'} the share that {event.clause}, keep"
-            f" {called(event.over)} {kept}: {result_there}.",
+            f" {called(event.over)} {kept}: {few} do there{averaged}.",
             (event.over,),
             key=key_of("quantities", lead.name, "events", event.name, key_name, verb="answer"),
             place=kept,
+            there=f"{few} {event.clause}{averaged}",
         )
 
 

@@ -33,6 +33,8 @@ class Advice:
         All that were compared: of each tolerance, every number that it would change.
     place : str
         Range of the input that is to be kept.
+    there : str
+        What happens to rows in that range: ``fewer than 5 % fail within 24 h on average``.
     """
 
     rule: str
@@ -44,6 +46,7 @@ class Advice:
     alike: tuple[TighterTolerance, ...] = ()
     tolerances: tuple[TighterTolerance, ...] = ()
     place: str = ""
+    there: str = ""
 
     @property
     def fact(self) -> Fact:
