@@ -113,10 +113,14 @@ class Indices:
         """The indices, with intervals of shares of the variance that reach from 0 to 1.
 
         An index near 0 may be estimated significantly below 0, which no share can be: its interval
-        ends at 0, since the share of an input without effect must be in it.
+        ends at 0, since the share of an input without effect must be in it. Differences of two
+        shares, labelled ``"x1 - x2"``, may be negative.
         """
         values = {
-            kind: {label: _possible(index) for label, index in indices.items()}
+            kind: {
+                label: index if " - " in label else _possible(index)
+                for label, index in indices.items()
+            }
             if kind.unit == "variance"
             else indices
             for kind, indices in self.values.items()

@@ -90,6 +90,10 @@ def _lognormal(law: Any, factor: float, shift: float) -> Arguments:
     return {"mean": law.mean * exp(shift * sigma), "cv": factor * law.cv}
 
 
+def _wear_coefficient(law: Any, factor: float, shift: float) -> Arguments:
+    return {"share": law.share * exp(shift * law.sigma), "sigma": factor * law.sigma}
+
+
 def _weibull(law: Any, factor: float, shift: float) -> Arguments:
     scale = law.scale * exp(shift * _GUMBEL_SD / law.shape)
     return {"shape": law.shape / factor, "scale": scale}
@@ -154,6 +158,7 @@ _WITH_ENDS: Mapping[str, Callable[[Any, float, float], Arguments]] = {
 _MOVED: Mapping[str, Callable[[Any, float, float], Arguments]] = {
     **dict.fromkeys(("normal", "truncated-normal"), _normal),
     "lognormal": _lognormal,
+    "wear-coefficient": _wear_coefficient,
     "weibull": _weibull,
     "gamma": _gamma,
     "gumbel": _gumbel,

@@ -276,6 +276,7 @@ ARGUMENTS = {
     "normal": {"mean": 3.0, "sd": 0.4},
     "truncated-normal": {"mean": 3.0, "sd": 0.9, "lower": 1.0, "upper": 4.0},
     "lognormal": {"mean": 3.0, "cv": 0.3},
+    "wear-coefficient": {"pair": "inconel-690/steel-405", "sigma": 0.4},
     "uniform": {"lower": 1.0, "upper": 4.0},
     "loguniform": {"lower": 0.5, "upper": 4.0},
     "triangular": {"lower": 1.0, "mode": 1.5, "upper": 4.0},
