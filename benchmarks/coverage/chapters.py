@@ -34,7 +34,7 @@ CHAPTERS = {
         r"Ishigami, morris|Input without effect|Ishigami, .*no interval"
     ),
     "Average effects": r"Average effects",
-    "Differences of two studies": r"Linear function",
+    "Differences of two studies": r"(Linear|Lognormal) function",
     "Joint bounds": r"Joint",
     "Two fidelities": r".*cheap twin",
     "Runs that stop early": r"Runs that stop",

@@ -96,5 +96,6 @@ RAISED = "conservative: the ends allow for one more row as extreme as the most e
 REASONS = {f"difference of quantile {p}": FEW_RANKS for p in QUANTILES} | {
     "ratio of sd": RAISED,
     "difference of sd": RAISED,
+    "difference of mean": RAISED,
 }
 """Quantity -> why its coverage is not 95 %."""

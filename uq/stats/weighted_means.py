@@ -292,16 +292,40 @@ def weighted_moments(
     Returns
     -------
     mean, sd : Estimate
-        The mean is missing, with the reason, if the Pareto k of weight times value is too large.
-        The standard deviation is missing if a sample carries more than a hundredth of the total
-        weight. This criterion must not depend on the values, since samples without an outlier
-        underestimate the scatter.
+        The mean is missing, with the reason, if the Pareto k of the weights is too large. The
+        standard deviation is missing if a sample carries more than a hundredth of the total weight.
+        These criteria must not depend on the values, since samples without an outlier underestimate
+        the scatter: of those that a criterion on weight times value accepts, intervals of the mean
+        covered 85 % where they cover 91 % of all. The interval of the mean has as many degrees of
+        freedom as the kurtosis of the influences allows [1]_.
+
+    References
+    ----------
+    .. [1] F. E. Satterthwaite, "An approximate distribution of estimates of variance components",
+       Biom. Bull. 2, 110-114 (1946).
     """
     mean, sd = moments_of_rows(values, weights, dependence)
+    differ = tail_shape(dependence.sums_of_samples(weights)) > -inf
+    if differ and mean.has_interval:
+        mean = _with_freedom_of_kurtosis(mean, weighted_part_means(values, weights, dependence))
     of_samples = dependence.sums_of_samples(weights)
-    differ = tail_shape(of_samples) > -inf
     why = too_large(largest_share(of_samples), len(of_samples)) if differ else ""
-    return if_reliable(mean, weights * values, dependence), Estimate(reason=why) if why else sd
+    return if_reliable(mean, weights, dependence), Estimate(reason=why) if why else sd
+
+
+def _with_freedom_of_kurtosis(mean: Estimate, part_means: Floats) -> Estimate:
+    """Return a mean with Student's interval of 2 n / (kurtosis - 1) degrees of freedom, if fewer.
+
+    The variance of a sample variance is (kurtosis - 1)/n times its square.
+    """
+    away = part_means - part_means.mean()
+    kurtosis = float(np.mean(away**4) / np.mean(away**2) ** 2) if away.any() else 1.0
+    parts = len(away)
+    freedom = min(2 * parts / max(kurtosis - 1, 1e-9), parts - 1.0)
+    probability = upper_probability(CONFIDENCE)
+    wider = student(probability, freedom) / student(probability, parts - 1)
+    low, high = (mean.value + wider * (end - mean.value) for end in (mean.low, mean.high))
+    return Estimate(mean.value, low, high, mean.reason, mean.assumes)
 
 
 def if_reliable(
