@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from uq.contract import Kind, Parameter, Setting, Status, censored_name
-from uq.sampling.named_values import read_settings
+from uq.sampling.named_values import read_settings, setting_types
 from uq.study.evaluate import evaluate
 from uq.study.installed_models import find_model, model_names
 
@@ -55,8 +55,13 @@ def run(model, settings, x, seed):
 
 def with_all_outputs(model):
     """Return settings under which a model has every output."""
-    optional = [name for name in model.setting_names if model.setting(name).optional]
-    return replace(model.settings(), **dict.fromkeys(optional, (1.0, 2.0)))
+    return replace(model.settings(), **dict.fromkeys(optional_coordinates(model), (1.0, 2.0)))
+
+
+def optional_coordinates(model):
+    """Return the optional settings that are lists of numbers: coordinates of a dimension."""
+    lists = [name for name, kind in setting_types(model).items() if kind == tuple[float, ...]]
+    return [name for name in lists if model.setting(name).optional]
 
 
 def bits(columns):
@@ -121,7 +126,7 @@ def test_settings_are_documented_frozen_and_travel(model, settings):
 def test_outputs_are_documented(model):
     settings = with_all_outputs(model)
     coordinates = model.coordinates(settings)
-    assert model.outputs and model.given(settings) is model
+    assert model.outputs and model.given(settings).outputs.keys() == model.outputs.keys()
     for name, output in model.outputs.items():
         assert output.unit.strip() and output.meaning.strip() and "\n" not in output.meaning, name
         assert output.unit not in TIME_UNITS, name
@@ -153,7 +158,8 @@ def test_outputs_along_optional_coordinates_leave_the_others_as_they_are(model):
     optional = [name for name in model.setting_names if model.setting(name).optional]
     assert all(getattr(settings, name) == () for name in optional)
     assert model.choices_of(settings).keys() == set(model.setting_names) - set(optional)
-    assert model.choices_of(more).keys() == set(model.setting_names)
+    coordinates = set(optional_coordinates(model))
+    assert model.choices_of(more).keys() == set(model.setting_names) - set(optional) | coordinates
     x, seed = near_nominal(model, 5)
     few, many = bits(run(model, settings, x, seed)), bits(run(model, more, x, seed))
     assert few.keys() < many.keys()
@@ -196,7 +202,33 @@ def test_only_models_that_say_so_depend_on_the_seed(model, settings):
         assert bits(run(model, settings, x, seed)) == bits(run(model, settings, x, seed[::-1]))
 
 
-SCALED = [m for m in map(find_model, model_names()) if any(o.scales for o in m.outputs.values())]
+def nominally(model):
+    """Return the model with the exponents that hold at its default settings and nominal values."""
+    return model.given(model.settings(), model.nominal)
+
+
+SCALED = [
+    m
+    for m in map(find_model, model_names())
+    if any(o.exponents for o in nominally(m).outputs.values())
+]
+
+
+def held(model):
+    """Return the parameters that must keep their nominal values for lives to scale."""
+    settings, nominal = model.settings(), model.nominal
+    wanted = {name: output.exponents for name, output in nominally(model).outputs.items()}
+    return [
+        parameter
+        for parameter in nominal
+        if wanted
+        != {
+            name: output.exponents
+            for name, output in model.given(
+                settings, {other: nominal[other] for other in nominal if other != parameter}
+            ).outputs.items()
+        }
+    ]
 
 
 def rows_that_differ_in_scale(model, scales, far):
@@ -211,6 +243,8 @@ def rows_that_differ_in_scale(model, scales, far):
     places = rng.random((far, len(low)))
     places[::2] = places[::2] > 0.5
     others = low + (high - low) * places
+    for name in held(model):
+        others[:, model.parameter_names.index(name)] = model.nominal[name]
     columns = [model.parameter_names.index(name) for name in scales]
     low, high = low[columns], high[columns]
     low = np.where(low > 0, low, 1e-9 * high)
@@ -232,9 +266,11 @@ def rows_that_differ_in_scale(model, scales, far):
 def test_scales_are_exact(model, far):
     """A life is proportional to the powers that its output declares, to the last digits."""
     for name, output in model.outputs.items():
-        assert not output.scales or output.is_lifetime, name
+        assert not output.scales or output.is_lifetime, name  # also where it depends on a study
+    outputs = nominally(model).outputs
+    for name, output in outputs.items():
         assert all(exponent and model.parameter(p) for p, exponent in output.scales.items()), name
-    wanted = {name: output for name, output in model.outputs.items() if output.scales}
+    wanted = {name: output for name, output in outputs.items() if output.scales}
     x, seed, factor = rows_that_differ_in_scale(model, next(iter(wanted.values())).scales, far)
     whole = run(model, model.settings(), x, seed)
     finite = np.concatenate([whole[name][np.isfinite(whole[name])] for name in wanted])

@@ -60,6 +60,10 @@ class Parameter:
     initial: bool = False
 
 
+Table = tuple[tuple[str, str | float], ...]
+"""A table of a study file as part of a setting: pairs of a key and its value, in their order."""
+
+
 @dataclass(frozen=True, slots=True)
 class Setting:
     """A numerical choice of a model: a tolerance, a mesh, a horizon; never random.
@@ -70,12 +74,13 @@ class Setting:
     unit : str
         ``"1"`` for a pure number.
     bounds : tuple of float, optional
-        Both ends included; for a list of numbers, or nested lists, they apply to each number.
+        Both ends included; for a list of numbers, or nested lists, they apply to each number,
+        not to texts beside them.
     choices : tuple of str
         Allowed values of a setting that is a word.
     optional : bool
-        For a list of the coordinates of a dimension, empty by default. While it is empty, the model
-        has no outputs along this dimension, and studies behave as without this setting.
+        For a list that is empty by default. While it is empty, studies behave as without this
+        setting. If it holds the coordinates of a dimension, the model then has no outputs along it.
     """
 
     meaning: str

@@ -11,10 +11,12 @@ from uq.text.units import readable
 
 from .markdown import formula, interval, minus, table, unit, value
 
+_NO_MACHINES = {"models.analytic", "models.gap_wear"}
+
 
 def machines() -> list[str]:
-    """Return the names of the models that are no functions with known answers."""
-    return [name for name in model_names() if module_of(name) != "models.analytic"]
+    """Return the names of the machines: no models with known answers."""
+    return [name for name in model_names() if module_of(name) not in _NO_MACHINES]
 
 
 def parameters(name: str) -> str:

@@ -5,7 +5,9 @@ to harmonic excitation", ASME IMECE 2002, and J. Sound Vib. 278 (2004) 1025.
 
 Reading order; each part imports only those above it:
 
-    parameters    inputs, settings and outputs
+    parameters    inputs and settings
+    processes     which processes beside wear by impact are on, and what scales lives
+    outputs       what is computed
     uncertain     laws of inputs in a new study
     structure     the rod as one oscillator per mode, and the load on it
     exact         one propagator: from event to event, the reference
@@ -14,7 +16,8 @@ Reading order; each part imports only those above it:
     response      the settled response at constant gaps
     wear          lives of beams whose gaps grow with the impact work
     units         conversion of dimensionless results to units
-    batch         from rows of parameters to outputs
+    batch         from rows of parameters to outputs, by wear by impact alone
+    service       the same over years of duty, creep and wear of both bodies: all rows
     trajectory    one labelled time history
     branches      periodic orbits followed over frequency, gap and wear
     explore       labelled data for notebooks
@@ -23,13 +26,14 @@ Reading order; each part imports only those above it:
 
 from typing import Any
 
-from models.beam.parameters import OUTPUTS, Params, Settings, coordinates
+from models.beam.outputs import OUTPUTS, coordinates
+from models.beam.parameters import Params, Settings
 from models.beam.uncertain import UNCERTAIN
 from uq.contract import Model, Trajectory
 
 
 def _batch(x: Any, seed: Any, settings: Settings) -> Any:
-    from models.beam.batch import batch  # imports numba only when needed
+    from models.beam.service.batch import batch  # imports numba only when needed
 
     return batch(x, seed, settings)
 
@@ -51,8 +55,9 @@ MODEL = Model(
     simulate=_simulate,
     coordinates=coordinates,
     dimensions={
-        "depth": ("m", "growth of the gap by wear"),
+        "depth": ("m", "depth of the rod's scar"),
         "instant": ("s", "time since wear began"),
+        "growth": ("m", "growth of the gap"),
     },
     random=True,
     random_unless={"random_force_level": 0.0},
@@ -61,6 +66,7 @@ MODEL = Model(
         "J. Knudsen, A. R. Massih, Impact work-rate and wear of a loosely supported beam subject "
         "to harmonic excitation, ASME IMECE 2002",
         "J. Knudsen, A. R. Massih, J. Sound Vib. 278 (2004) 1025",
+        "Code_Aster, documentation of POST_USURE: volumes of scars, EDF's law of wear",
     ),
     headline=("first_time_to_depth", "work_rate_heavy"),
     row_name=("rod", "rods"),

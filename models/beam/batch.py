@@ -1,11 +1,11 @@
-"""From rows of parameters to work-rates, regimes and lifetimes."""
+"""From rows of parameters to work-rates, regimes and lives by wear by impact alone."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.parameters import Params, Rows, Settings
+from models.beam.parameters import OF_PROCESSES, Params, Rows, Settings
 from models.beam.response.further_starts import add_other_responses
 from models.beam.response.neighbouring_starts import add_neighbour_error
 from models.beam.response.response import Response
@@ -22,6 +22,7 @@ from uq.contract import Status
 
 # These only scale lifetimes (eq 12): rows that differ only here share a simulation.
 _SCALES = [Params._fields.index(name) for name in ("wear_coefficient", "contact_area")]
+_UNUSED = [Params._fields.index(name) for name in OF_PROCESSES]
 _BAND = [Params._fields.index(name) for name in ("random_force_low", "random_force_high")]
 
 
@@ -34,7 +35,10 @@ class Simulated(NamedTuple):
 
 
 def batch(
-    x: Array, seed: NDArray[np.uint64], settings: Settings
+    x: Array,
+    seed: NDArray[np.uint64],
+    settings: Settings,
+    followed: NDArray[np.bool_] | None = None,
 ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
     """Compute n beams.
 
@@ -45,11 +49,14 @@ def batch(
     seed : ndarray of uint64, shape (n,)
         Of the realisation of the random force; without one the beam is deterministic.
     settings : Settings
+    followed : ndarray of bool, shape (n,), optional
+        Mask of the beams whose lives are found, all by default; those of others are unknown.
 
     Returns
     -------
     outputs : dict of str to ndarray, shape (n, ...)
-        Those of `models.beam.parameters.OUTPUTS`, with ``*_censored`` beside each lifetime.
+        Those of `models.beam.outputs.OUTPUTS` that wear by impact decides, with ``*_censored``
+        beside each lifetime.
     status : ndarray of int8, shape (n,)
         Non-finite, as are all outputs, where the band of a random force has no width.
     """
@@ -60,15 +67,23 @@ def batch(
     given = x.copy()
     given[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load has no effect
     # The instants of such rows differ in the time of the simulation.
-    shared = [] if settings.instants else _SCALES
+    shared = _UNUSED if settings.instants else _UNUSED + _SCALES
     dynamic = np.hstack([np.delete(given, shared, axis=1), halves.astype(float)])
+    if followed is not None:
+        dynamic = np.hstack([dynamic, followed[:, None].astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
     distinct: Rows = Params._make(np.ascontiguousarray(x[first].T))
-    simulated = simulate_rows(distinct, settings, seed[first])
+    among = None if followed is None else followed[first]
+    simulated = simulate_rows(distinct, settings, seed[first], among)
     return _in_units(p, _take(simulated, back.reshape(-1)), settings)
 
 
-def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Simulated:
+def simulate_rows(
+    p: Rows,
+    settings: Settings,
+    seed: NDArray[np.uint64] | None = None,
+    followed: NDArray[np.bool_] | None = None,
+) -> Simulated:
     """Find the settled response and the dimensionless lives of n beams.
 
     Parameters
@@ -78,6 +93,8 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     settings : Settings
     seed : ndarray of uint64, shape (n,), optional
         Of the random force; 0 if not given.
+    followed : ndarray of bool, shape (n,), optional
+        As in `batch`.
 
     Returns
     -------
@@ -94,7 +111,8 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     for group, system in propagator.groups(b.take(possible), settings):
         rows = possible[group]
         q = Params._make(field[rows] for field in p)
-        settled, lives = _simulate_group(propagator, system, q, settings)
+        among = np.ones(len(rows), bool) if followed is None else followed[rows]
+        settled, lives = _simulate_group(propagator, system, q, settings, among)
         fields: tuple[Any, ...] = (*whole.response, *whole.lives)
         for field, part in zip(fields, (*settled, *lives), strict=True):
             field[rows] = part
@@ -102,7 +120,11 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
 
 
 def _simulate_group(
-    propagator: Propagator, system: System, p: Rows, settings: Settings
+    propagator: Propagator,
+    system: System,
+    p: Rows,
+    settings: Settings,
+    followed: NDArray[np.bool_],
 ) -> tuple[Response, Lives]:
     gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     begin = state.copy()
@@ -115,7 +137,7 @@ def _simulate_group(
     growths = np.asarray(settings.depths) / p.initial_gap[:, None]
     clock = np.asarray(settings.instants) * (p.forcing_frequency * wear_per_work(p))[:, None]
     lives = Lives.nothing(len(growths), growths.shape[1], clock.shape[1])
-    valid = np.isfinite(settled.work).all(axis=1)
+    valid = np.isfinite(settled.work).all(axis=1) & followed
     for is_random in (False, True):
         rows = np.flatnonzero(valid & (system.beams.is_random == is_random))
         if not len(rows):

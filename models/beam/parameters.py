@@ -1,15 +1,14 @@
-"""Parameters, settings and outputs of the beam, each declared once.
+"""Parameters and settings of the beam, each declared once.
 
 Nominal values after Knudsen & Massih (ASME IMECE 2002), whose printed table is only partly legible:
 a source is "given" where the number is legible, "inferred" where it was recovered from the paper's
 results, "fitted" where it was chosen to match them, "assumed" where the paper has none.
 """
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, NamedTuple
 
-from uq.contract import Output, Parameter, Setting
+from uq.contract import Parameter, Setting, Table
 
 PAPER = "Knudsen & Massih 2002, Table 1"
 GIVEN, INFERRED = f"{PAPER}: given", f"{PAPER}: inferred"
@@ -81,7 +80,59 @@ class Params(NamedTuple):
         "f_high", "Hz", "upper end of the random force's band; it must be above the lower one",
         (1.0, 6e3),
         "assumed: the first four natural frequencies, up to 189 Hz, are within the band")] = 200.0
+    support_wear_ratio: Annotated[float, Parameter(
+        "kappa", "1", "volume worn off the support over that of the rod", (0.0, 1e3),
+        "assumed: the rod alone wears")] = 0.0
+    rod_radius: Annotated[float, Parameter(
+        "R", "m", "radius of the rod, for scars that are not prismatic", (1e-4, 1.0),
+        "assumed: cladding of 9.5 mm")] = 4.75e-3
+    support_width: Annotated[float, Parameter(
+        "L_s", "m", "width of the support, for scars of bars", (1e-4, 0.3), "assumed")] = 3e-3
+    support_radius: Annotated[float, Parameter(
+        "R_s", "m", "radius of the support, for scars of dimples", (1e-4, 1.0), "assumed")] = 1e-2
+    support_inclination: Annotated[float, Parameter(
+        "theta", "1", "angle of an inclined bar [rad]", (1e-4, 0.5), "assumed")] = 1e-2
+    creep_down: Annotated[float, Parameter(
+        "C_c", "m", "growth of the gaps by creep-down of the rod in the end", (0.0, 1e-2),
+        "assumed: none")] = 0.0
+    creep_time: Annotated[float, Parameter(
+        "tau_c", "s", "time constant of creep-down", (1e3, 1e12), "assumed: 1.5 years")] = 4.7e7
+    preload_deflection: Annotated[float, Parameter(
+        "delta_0", "m", "deflection of preloaded supports when new; 0: the gaps are open",
+        (0.0, 1e-2), "assumed: none")] = 0.0
+    relaxed_share: Annotated[float, Parameter(
+        "phi", "1", "preload when relaxed over that when new", (0.0, 1.0),
+        "assumed: no relaxation")] = 1.0
+    relaxation_time: Annotated[float, Parameter(
+        "tau_r", "s", "time constant of relaxation", (1e3, 1e12), "assumed: 1.5 years")] = 4.7e7
+    swelling_rate: Annotated[float, Parameter(
+        "s", "m s-1", "closing of the gaps by swelling", (0.0, 1e-6), "assumed: none")] = 0.0
+    swelling_start: Annotated[float, Parameter(
+        "t_s", "s", "time from which swelling closes the gaps", (0.0, 1e12), "assumed")] = 0.0
+    gap_history_factor: Annotated[float, Parameter(
+        "f", "1", "factor on the setting gap_history", (0.0, 100.0), "assumed: exact")] = 1.0
+    oxide_thickness: Annotated[float, Parameter(
+        "delta_ox", "m", "depth of the rod's scar down to which oxide wears", (0.0, 1e-3),
+        "assumed: none")] = 0.0
+    oxide_wear_factor: Annotated[float, Parameter(
+        "psi_ox", "1", "rate of wear of the oxide over that of the rod", (1e-3, 1e3),
+        "assumed: wears alike")] = 1.0
 # fmt: on
+
+OF_PROCESSES = Params._fields[Params._fields.index("support_wear_ratio") :]
+"""Inputs of processes beside wear by impact, and of shapes of scars."""
+
+FACTORS = ("force", "frequency", "random_level")
+"""Factors of a duty state, beside that on the wear."""
+
+SCARS = ("prismatic", "flat-bar", "dimple", "inclined")
+"""As in `models.numerics.scars`."""
+
+WEAR_LAWS = ("archard", "power", "running-in", "edf")
+"""As in `models.numerics.wear_laws.laws`."""
+
+ORDERS = ("mixed", "sequence")
+"""As in `models.numerics.duty`."""
 
 
 Rows = Any
@@ -115,8 +166,12 @@ class Settings:
         ),
     ] = 0
     depths: Annotated[
-        tuple[float, ...],
-        Setting("gap growths whose lifetimes are reported", "m", bounds=(1e-9, 1e-1)),
+        tuple[float | str, ...],
+        Setting(
+            "depths of the rod's scar whose lives are reported; '40 %' is a share of the wall",
+            "m",
+            bounds=(1e-9, 1e-1),
+        ),
     ] = (1.25e-4, 2.5e-4, 5e-4)
     instants: Annotated[
         tuple[float, ...],
@@ -144,10 +199,48 @@ class Settings:
         ),
     ] = 0
 
+    wall_thickness: Annotated[
+        float, Setting("wall that depths in percent refer to; 0: none", "m", bounds=(0.0, 1.0))
+    ] = 0.0
+    growths: Annotated[
+        tuple[float, ...],
+        Setting("growths of the gap whose times are reported", "m", (1e-9, 1e-1), optional=True),
+    ] = ()
+    scar: Annotated[str, Setting("shape of the scars", choices=SCARS)] = "prismatic"
+    wear_law: Annotated[
+        str, Setting("law by which volume is worn off, from work-rates", choices=WEAR_LAWS)
+    ] = "archard"
+    wear_law_numbers: Annotated[
+        Table, Setting("numbers of the law of wear, by name", optional=True)
+    ] = ()
+    gap_history: Annotated[
+        tuple[tuple[float, float], ...],
+        Setting("times [s] and changes of the gaps [m], piecewise linear", optional=True),
+    ] = ()
+    duty: Annotated[
+        tuple[Table, ...],
+        Setting(
+            "states of operation: name, share or duration [s], factors wear, force, frequency and"
+            " random_level, gap_offset [m]",
+            optional=True,
+        ),
+    ] = ()
+    order: Annotated[
+        str, Setting("whether the states of duty mix or follow each other", choices=ORDERS)
+    ] = "mixed"
+    response_budget: Annotated[
+        int,
+        Setting(
+            "largest number of responses settled in a life with processes beside wear by impact",
+            bounds=(1, 100_000),
+        ),
+    ] = 1000
+
     def __post_init__(self):
+        depths = tuple(_depth(value, self.wall_thickness) for value in self.depths)
+        object.__setattr__(self, "depths", depths)
         if self.residual_flexibility and self.propagator == "exact":
             raise ValueError("residual_flexibility needs propagator = 'fast'")
-        depths = self.depths
         if not depths or any(b <= a for a, b in zip(depths, depths[1:], strict=False)):
             raise ValueError("depths must be a list of increasing numbers")
         instants = self.instants
@@ -155,100 +248,30 @@ class Settings:
             raise ValueError("instants must be a list of increasing numbers")
         if instants and instants[-1] > self.horizon:
             raise ValueError("instants must not lie beyond the horizon")
+        if any(b <= a for a, b in zip(self.growths, self.growths[1:], strict=False)):
+            raise ValueError("growths must be a list of increasing numbers")
+        if self.wear_law != "archard" or self.wear_law_numbers or self.duty or self.gap_history:
+            from models.numerics.duty import duty_numbers, history_numbers  # import numba
+            from models.numerics.wear_laws.laws import law_numbers
+
+            law_numbers(self.wear_law, self.wear_law_numbers)
+            duty = duty_numbers(self.duty, self.order, FACTORS)
+            if not (duty[:, -len(FACTORS) + FACTORS.index("frequency")] > 0).all():
+                raise ValueError("the frequency factor of every duty state must be positive")
+            history_numbers(self.gap_history)
 
 
-def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
-    """Return the coordinates of the outputs' dimensions."""
-    return {"site": SITES, "depth": settings.depths, "instant": settings.instants}
-
-
-_LIFE_SCALES = {"wear_coefficient": -1.0, "contact_area": 1.0}  # eq 12: gaps grow with their ratio
-
-OUTPUTS: Mapping[str, Output] = {
-    "work_rate": Output("W", "impact work-rate of each site at the initial gaps", dims=("site",)),
-    "work_rate_error": Output(
-        "W",
-        "numerical error of the work-rate in the response from this start: of the steps and of the"
-        " time mean; also the distance of other responses from further starts, if set",
-        dims=("site",),
-    ),
-    "work_rate_heavy": Output("W", "the larger of the two sites' work-rates"),
-    "work_rate_light": Output("W", "the smaller of the two sites' work-rates"),
-    "peak_contact_force": Output(
-        "N", "largest contact force of each site at the initial gaps", dims=("site",)
-    ),
-    "time_to_depth": Output(
-        "s",
-        "time until the site's gap has grown by the depth",
-        "lifetime",
-        ("site", "depth"),
-        accuracy="accuracy",
-        never_known_at_once=False,  # wear may stop after the horizon
-        scales=_LIFE_SCALES,
-    ),
-    "time_to_depth_error": Output(
-        "s",
-        "numerical error of the site's time to depth",
-        dims=("site", "depth"),
-        may_be_undefined=True,
-    ),
-    "first_time_to_depth": Output(
-        "s",
-        "time until either site's gap has grown by the depth",
-        "lifetime",
-        ("depth",),
-        accuracy="accuracy",
-        never_known_at_once=False,
-        scales=_LIFE_SCALES,
-    ),
-    "first_time_to_depth_error": Output(
-        "s",
-        "numerical error of the earlier time to depth",
-        dims=("depth",),
-        may_be_undefined=True,
-    ),
-    "linear_time_to_depth": Output(
-        "s",
-        "earlier time to depth at constant initial work-rates",
-        "lifetime",
-        ("depth",),
-        may_be_censored=False,
-        scales=_LIFE_SCALES,
-    ),
-    "lifetime_ratio": Output(
-        "1",
-        "time to depth at the initial wear rate, over that with wear followed as the gaps grow",
-        dims=("depth",),
-        may_be_undefined=True,
-    ),
-    "gap_ratio": Output(
-        "1",
-        "gap of the less worn site over that of the more worn one at the first time to depth",
-        dims=("depth",),
-        may_be_undefined=True,
-    ),
-    "worn_depth": Output(
-        "m",
-        "growth of the site's gap by the instant, nine in ten within the accuracy of lives;"
-        " the last of the depths once that is reached",
-        dims=("site", "instant"),
-    ),
-    "largest_worn_depth": Output(
-        "m",
-        "larger worn depth of the two sites, at most the last of the depths, at the instant",
-        dims=("instant",),
-    ),
-    "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),
-    "period": Output(
-        "1", "period of the response in forcing periods", "category", categories=PERIODS
-    ),
-    "floquet_multiplier": Output(
-        "1",
-        "largest modulus of the periodic response's Floquet multipliers, over its period",
-        may_be_undefined=True,
-    ),
-    "regime_changes": Output(
-        "1", "changes of regime until both sites have worn by the last depth, or wear has stopped"
-    ),
-    "fundamental_frequency": Output("Hz", "first natural frequency of the beam out of contact"),
-}
+def _depth(value: float | str, wall: float) -> float:
+    """Return a depth [m]; raise a `ValueError` in one line."""
+    if not isinstance(value, str):
+        return float(value)
+    number = value.removesuffix("%").strip()
+    try:
+        percent = float(number)
+    except ValueError:
+        percent = 0.0
+    if number == value.strip() or not 0 < percent <= 100:
+        raise ValueError(f"depths: {value!r} must be a number of metres, or like '40 %'")
+    if wall == 0:
+        raise ValueError(f"depths: {value!r} needs wall_thickness")
+    return percent / 100 * wall

@@ -23,6 +23,12 @@ Reading order; a module imports only those above it:
     nystrom         any tableau for q'' = f(q, q'), many systems, fixed steps
     dop853_step     order 8(5,3), one system: a step
     dop853          the same over any time, through guarded modes
+    slow_step       a step of quantities that wear, by Heun's method
+    slow_time       the same over any time, with duty states, gaps that open or close, and events
+    scars           volumes of wear scars by their depths, and the inverse
+    gap_drift       growth of a gap by itself: creep, relaxation, swelling, a history
+    wear_laws       rates of wear by work-rate, time, depth and volume
+    duty            states of operation, mixed or in sequence
     newton          damped Newton's method
     continuation    branches of solutions, through folds
 """

@@ -64,6 +64,35 @@ def columns_of_files(
     return columns, faults
 
 
+def with_rows_of_files(settings: Mapping[str, Any], columns: Columns) -> dict[str, Any]:
+    """Return settings in which rows of numbers take the place of tables that name a file.
+
+    Parameters
+    ----------
+    settings : dict
+        Setting -> its value; a table ``{file = ..., columns = [...]}`` stands for the rows of these
+        columns.
+    columns : dict
+        As `columns_of_files` returns them; a table whose file could not be read is left as it is.
+    """
+    return {name: _rows(value, columns) for name, value in settings.items()}
+
+
+def _rows(value: Any, columns: Columns) -> Any:
+    texts = [columns.get(file, {}).get(column) for file, column in _columns_named(value)]
+    if not texts or None in texts:
+        return value
+    return np.stack([numbers(text) for text in texts if text is not None], axis=1).tolist()
+
+
+def _columns_named(value: Any) -> list[tuple[str, str]]:
+    """Return the file and the columns that the value of a setting names."""
+    match value:
+        case {"file": str(file), "columns": [*columns], **others} if not others:
+            return [(file, str(column)) for column in columns]
+    return []
+
+
 def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
     """Return the text of a study file with the columns that it names appended.
 
@@ -98,6 +127,9 @@ def numbers(text: str) -> Floats:
 def _named(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str, str]]:
     """Yield the path of each entry that names a file, the file name, and each required column."""
     uncertain, design = tables["uncertain"], tables["design"]
+    for name, value in tables["settings"].items():
+        for file, column in _columns_named(value):
+            yield ("settings", name), file, column
     for name, entry in uncertain.items():
         if "file" in entry:
             yield ("uncertain", name, "file"), entry["file"], entry["column"]

@@ -5,11 +5,12 @@ Study files, ``uq simulate --set`` and the Python API share them.
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from types import UnionType
 from typing import Any, get_args, get_type_hints
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from uq.contract import Model, Parameter
+from uq.contract import Model, Parameter, Table
 from uq.errors import nearest, one_line
 
 
@@ -110,7 +111,9 @@ def fault_lines(
 
 
 def _frozen(value: Any) -> Any:
-    """Return lists, including nested lists, as tuples."""
+    """Return lists, including nested lists, as tuples, and tables as tuples of pairs."""
+    if isinstance(value, Mapping):
+        return tuple(value.items())
     return tuple(map(_frozen, value)) if isinstance(value, list | tuple) else value
 
 
@@ -129,7 +132,7 @@ def _allowed(model: Model, name: str, value: Any) -> bool:
         return value in declared.choices
     if declared.bounds is not None:
         low, high = declared.bounds
-        return all(low <= number <= high for number in _numbers(value))
+        return all(isinstance(n, str) or low <= n <= high for n in _numbers(value))
     return all(number == number for number in _numbers(value))  # nan is never intended
 
 
@@ -148,6 +151,10 @@ def _kind_in_words(kind: Any) -> str:
     scalars = {int: "a whole number", float: "a number", bool: "true or false", str: "a text"}
     if kind in scalars:
         return scalars[kind]
+    if kind == Table:
+        return "a table of texts and numbers"
+    if isinstance(kind, UnionType):
+        return " or ".join(map(_kind_in_words, get_args(kind)))
     if not get_args(kind):
         return "of the right type"
     first, *others = get_args(kind)

@@ -12,7 +12,7 @@ from uq.machines.row_by_row import RowByRow
 from uq.sampling.designs import DESIGNS, PATHS, Design
 from uq.sampling.input_faults import InputFault, unknown
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
-from uq.sampling.named_values import parameter_problem, read_settings, unknown_name
+from uq.sampling.named_values import parameter_problem, read_settings, setting_types, unknown_name
 from uq.text.element_names import place_of, places, whole_name
 from uq.text.quantities import misfit, read_quantity
 
@@ -149,7 +149,11 @@ def _output_faults(
     elif name not in model.outputs:
         yield InputFault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
     elif settings is not None and name not in model.given(settings).outputs:
-        optional = [setting for setting in model.setting_names if model.setting(setting).optional]
+        types = setting_types(model)
+        lists = [setting for setting, kind in types.items() if kind == tuple[float, ...]]
+        optional = [setting for setting in lists if model.setting(setting).optional]
+        along = {f"{dim}s" for dim in model.outputs[name].dims}
+        optional = [setting for setting in optional if setting in along] or optional
         yield InputFault(path, f"it needs {choices(optional)} in [settings]", value)
     elif no_number and model.outputs[name].is_category:
         yield InputFault(path, f"is a category: {no_number}", value)

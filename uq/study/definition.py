@@ -13,7 +13,12 @@ from typing import Any, Self
 from uq.contract import Model
 from uq.errors import InputError, nearest_file
 from uq.files.netcdf_files import SIGNATURES
-from uq.sampling.data_files import columns_of_files, numbers, with_columns
+from uq.sampling.data_files import (
+    columns_of_files,
+    numbers,
+    with_columns,
+    with_rows_of_files,
+)
 from uq.sampling.designs import DESIGNS, IMPORTED
 from uq.sampling.input_faults import InputFault
 from uq.sampling.law import Law
@@ -255,6 +260,7 @@ def study_from_text(
     ]
     tables = sound_entries(data, faults)
     columns, more = columns_of_files(tables, folder)
+    tables["settings"] = with_rows_of_files(tables["settings"], columns)
     entries, spoilt = read_entries(tables, columns)
     faults += [*more, *spoilt, *dependence_faults(tables, entries), *of_model]
     if study_model is not None:
@@ -269,7 +275,7 @@ def study_from_text(
         raise InputError(*lines)
 
     file = StudyFile.model_validate(data)
-    settings, _ = read_settings(study_model, file.settings)
+    settings, _ = read_settings(study_model, tables["settings"])
     constants = study_model.nominal | dict(file.fixed)
     for name in entries:
         constants.pop(name, None)

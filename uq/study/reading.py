@@ -139,6 +139,10 @@ def in_units_of(model: Model, data: dict[str, Any]) -> dict[tuple[str, ...], str
         declared = model.setting(name)
         if not declared.choices and "str" not in str(kinds[name]):
             convert(table("settings"), name, declared.unit, ("settings", name))
+        elif kinds[name] == tuple[float | str, ...]:  # text of another unit has its own meaning
+            convert(table("settings"), name, declared.unit, ("settings", name))
+            for path in [path for path in misfits if path[:2] == ("settings", name)]:
+                del misfits[path]
     return misfits
 
 

@@ -2,12 +2,12 @@
 
 from contextlib import suppress
 from math import isfinite
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
-from uq.contract import Model
+from uq.contract import Model, Table
 from uq.errors import InputError
 from uq.indices.methods import fed_by
 from uq.sampling.designs import DESIGNS, MAX_SAMPLES, Design
@@ -163,7 +163,13 @@ def _fixed(model: Model, name: str) -> Schema:
 
 def _setting(model: Model, name: str, kind: Any) -> Schema:
     declared = model.setting(name)
-    schema: Schema = TypeAdapter(kind).json_schema()
+    pairs = {"additionalProperties": {"type": ["string", "number"]}}
+    if kind == Table:
+        schema: Schema = {"type": ["object", "array"], "maxItems": 0, **pairs}  # [] for none
+    elif Table in get_args(kind):
+        schema = {"type": "array", "items": pairs}
+    else:
+        schema = TypeAdapter(kind).json_schema()
     if declared.choices:
         schema["enum"] = list(declared.choices)
     schema = schema if declared.choices or "str" in str(kind) else _with_units(schema)

@@ -43,7 +43,9 @@ _NEARER = 0.5  # that distance over the one at which a search for an orbit faile
 _SYMMETRIC = 1e-3  # difference of the sites' work, relative to their sum
 
 
-def settle(propagator: Propagator, system: System, state: Array, gaps: Array) -> Response:
+def settle(
+    propagator: Propagator, system: System, state: Array, gaps: Array, shortest: int = SHORTEST
+) -> Response:
     """Run n beams until they have settled.
 
     Parameters
@@ -55,6 +57,8 @@ def settle(propagator: Propagator, system: System, state: Array, gaps: Array) ->
         Updated in place: the state at the end.
     gaps : ndarray, shape (n, 2)
         In initial gaps.
+    shortest : int
+        Segments in which an aperiodic response is observed, at least.
 
     Returns
     -------
@@ -68,7 +72,8 @@ def settle(propagator: Propagator, system: System, state: Array, gaps: Array) ->
     if len(random):
         _settle_random(propagator, system, state, gaps, never_touches, random, out)
     longest = min(LONGEST, max(SHORTEST, MOST_STEPS // (SEGMENT * system.steps)))
-    look(propagator, system, state, gaps, np.flatnonzero(~system.beams.is_random), out, longest)
+    harmonic = np.flatnonzero(~system.beams.is_random)
+    look(propagator, system, state, gaps, harmonic, out, longest, shortest)
     remembers = ~system.beams.is_random & (MEMORIES * system.beams.memory > longest * SEGMENT)
     out.forget(np.flatnonzero(remembers & (out.regime == APERIODIC)))
     out.forget(np.flatnonzero(np.isnan(out.work).any(axis=1)))

@@ -18,7 +18,8 @@ from uq.study.template import template
 def test_a_template_is_a_study(name):
     model = find_model(name)
     study = study_from_text(template(model))
-    assert study.model == model.given(model.settings())
+    constants = {key: x for key, x in model.nominal.items() if key not in study.uncertain}
+    assert study.model == model.given(model.settings(), constants)
     assert study.settings == model.settings()
     if model.uncertain:  # as declared, each with its source
         assert list(study.uncertain) == list(model.uncertain)

@@ -1,0 +1,217 @@
+"""Lives of rods in service: rows are integrated by turns, each as far as its responses go."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.parameters import FACTORS, Rows, Settings
+from models.beam.service.growth import AVAILABLE, IS_MISSING, integrate_rod
+from models.beam.service.responses import Responses
+from models.beam.start import initial_gaps, wear_shares
+from models.beam.structure.modal import Array
+from models.numerics.duty import duty_numbers, history_numbers
+from models.numerics.scars import Scar, scar, scar_depth
+from models.numerics.slow_time import NEVER, PENDING, REACHED
+from models.numerics.wear_laws.laws import law_numbers
+
+_LONGEST = 1e12  # s, of a life without a horizon
+
+
+class ServiceLives(NamedTuple):
+    """Lives of n rods.
+
+    Attributes
+    ----------
+    time, error : ndarray, shape (n, q)
+        Of the events of `models.beam.service.growth.integrate_rod` [s]; inf for never; the errors
+        NaN where an event is not reached.
+    censored, reached : ndarray of bool, shape (n, q)
+    worn : ndarray, shape (n, T, 2)
+        Depth of the rod's scar of each site at the instants [m].
+    at_depth : ndarray, shape (n, D, 2)
+        Gap of each site when the rod's scar at either is as deep [m]; NaN where it never is.
+    changes : ndarray, shape (n,)
+        Of the regime.
+    lost, unfinished : ndarray of bool, shape (n,)
+        No propagator can follow the rod; it needs more responses than the budget.
+    """
+
+    time: Array
+    error: Array
+    censored: NDArray[np.bool_]
+    reached: NDArray[np.bool_]
+    worn: Array
+    at_depth: Array
+    changes: Array
+    lost: NDArray[np.bool_]
+    unfinished: NDArray[np.bool_]
+
+
+def scars_of(p: Rows, settings: Settings) -> Scar:
+    """Return the scars of n rods."""
+    return scar(
+        settings.scar, p.contact_area, p.rod_radius, p.support_width, p.support_radius,
+        p.support_inclination,
+    )  # fmt: skip
+
+
+def gaps_when_new(p: Rows) -> Array:
+    """Return the gaps of n rods when new [m], shape (n, 2); Eq. (4)."""
+    preload = p.preload_deflection[:, None]
+    return np.where(preload > 0, -preload, initial_gaps(p) * p.initial_gap[:, None])
+
+
+def drift_of(p: Rows) -> Array:
+    """Return the drifts of n rods, shape (n, 7)."""
+    relaxation = p.preload_deflection * (1 - p.relaxed_share)
+    return np.stack(
+        [
+            p.creep_down, p.creep_time, relaxation, p.relaxation_time, p.swelling_rate,
+            p.swelling_start, p.gap_history_factor,
+        ],
+        axis=1,
+    )  # fmt: skip
+
+
+class _Row:
+    """One rod: the arguments of `integrate_rod`, and its results."""
+
+    def __init__(self, shared: dict[str, Any], budget: int, **numbers: Any) -> None:
+        states, depths = len(shared["duty"]), shared["depths"]
+        events = 2 * len(depths) + 2 * len(shared["growths"]) + 2
+        self.arguments = shared | numbers
+        self.work, self.noise = np.zeros((2, budget, states, 2))
+        self.cursor, self.at = np.zeros(3, np.int64), np.zeros(1 + 2 * states)
+        self.fate = np.zeros(events, np.int8)
+        self.time, self.error = np.empty((2, events))
+
+    def integrate(self, instants: Array, length: float, end: float) -> tuple[float, Array]:
+        """Return the time reached and the volumes at the instants, shape (T, 2)."""
+        volume = np.empty((len(instants), 2))
+        a = self.arguments
+        _, time = integrate_rod(
+            a["gap"], a["coefficient"], a["numbers"], a["depths"], a["growths"], a["drift"],
+            a["history"], a["laws"], a["duty"], a["in_sequence"], a["reach"],
+            self.work, self.noise, self.cursor, self.at, a["floor"], length, end,
+            self.fate, self.time, self.error, instants, volume,
+        )  # fmt: skip
+        return time, volume
+
+
+def find_service_lives(p: Rows, settings: Settings, seed: NDArray[np.uint64]) -> ServiceLives:
+    """Find the lives of n rods.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+    settings : Settings
+    seed : ndarray of uint64, shape (n,)
+        Of the random force.
+
+    Returns
+    -------
+    ServiceLives
+    """
+    n, end = len(seed), min(settings.horizon, _LONGEST)
+    instants = np.array(settings.instants, float)
+    length = float(np.sqrt(settings.accuracy))  # the error is of second order in it
+    duty = duty_numbers(settings.duty, settings.order, FACTORS)
+    responses = Responses(p, duty, settings, seed)
+    rods = _rows(p, settings, duty, responses.reach)
+    until = np.zeros(n)
+    worn = np.full((n, len(instants), 2), np.nan)
+    lost, unfinished = np.zeros((2, n), bool)
+    left = list(range(n))
+    while left:
+        asking = []
+        for i in left:
+            until[i], worn[i] = rods[i].integrate(instants, length, end)
+            used = rods[i].cursor[AVAILABLE]
+            if not rods[i].cursor[IS_MISSING]:
+                pending = bool((rods[i].fate == PENDING).any())
+                unfinished[i] = pending and until[i] < settings.horizon
+            elif used == settings.response_budget:
+                unfinished[i] = True
+            else:
+                asking.append(i)
+        if asking:
+            at = np.array([rods[i].at for i in asking])
+            gaps = at[:, 1:].reshape(len(asking), len(duty), 2)
+            work, noise = responses.settle(np.array(asking), at[:, 0], gaps)
+            for j, i in enumerate(asking):
+                used = rods[i].cursor[AVAILABLE]
+                rods[i].work[used], rods[i].noise[used] = work[j], noise[j]
+                rods[i].cursor[AVAILABLE] += 1
+                lost[i] = bool(np.isnan(work[j]).any())
+        left = [i for i in asking if not lost[i]]
+    fate = np.array([rod.fate for rod in rods])
+    time, error = (np.array([getattr(rod, name) for rod in rods]) for name in ("time", "error"))
+    pending = fate == PENDING
+    time[pending] = np.broadcast_to(until[:, None], pending.shape)[pending]
+    time[fate == NEVER] = np.inf
+    error[fate != REACHED] = np.nan
+    time[lost], error[lost], pending[lost] = np.nan, np.nan, False
+    changes = np.array([responses.regime_changes(i) for i in range(n)], float)
+    reached = fate == REACHED
+    at_depth = np.stack([_gaps_at_depths(rod, length, end) for rod in rods])
+    worn = np.stack([_rod_depth(rod, volume) for rod, volume in zip(rods, worn, strict=True)])
+    return ServiceLives(
+        time, error, pending, reached, worn, at_depth, changes, lost, unfinished & ~lost
+    )
+
+
+def _rows(p: Rows, settings: Settings, duty: Array, reach: Array) -> list[_Row]:
+    depths, growths = np.array(settings.depths), np.array(settings.growths, float)
+    shape, drift = scars_of(p, settings), drift_of(p)
+    x_0 = p.initial_gap[:, None]
+    gap = gaps_when_new(p)
+    coefficient = wear_shares(p) * p.wear_coefficient[:, None]
+    least = np.minimum(x_0[:, 0], (1 + p.support_wear_ratio) * depths[0])
+    if len(growths):
+        least = np.minimum(least, growths[0])
+    shared = {
+        "depths": depths,
+        "growths": growths,
+        "history": history_numbers(settings.gap_history),
+        "laws": law_numbers(settings.wear_law, settings.wear_law_numbers),
+        "duty": duty,
+        "in_sequence": bool(settings.duty) and settings.order == "sequence",
+    }
+    oxide = p.oxide_thickness, p.oxide_wear_factor
+    numbers = np.stack([p.support_wear_ratio, *shape, *oxide], axis=1)
+    return [
+        _Row(
+            shared,
+            settings.response_budget,
+            gap=gap[i].copy(),
+            coefficient=coefficient[i].copy(),
+            numbers=numbers[i].copy(),
+            drift=drift[i].copy(),
+            reach=reach[i].copy(),
+            floor=np.full(2, least[i]),
+        )
+        for i in range(len(numbers))
+    ]
+
+
+def _rod_depth(rod: _Row, volume: Array) -> Array:
+    """Return the depths of the rod's scar for volumes of both bodies, in the same shape."""
+    kappa, *shape = rod.arguments["numbers"][:4].tolist()
+    flat = [scar_depth(v, *shape) / (1 + kappa) if v >= 0 else np.nan for v in volume.flat]
+    return np.array(flat, float).reshape(volume.shape)
+
+
+def _gaps_at_depths(rod: _Row, length: float, end: float) -> Array:
+    """Return the growth by wear of both sites when the first is as deep, shape (D, 2) [m]."""
+    count = len(rod.arguments["depths"])
+    reached = rod.fate[: 2 * count].reshape(2, count) == REACHED
+    first = np.where(reached, rod.time[: 2 * count].reshape(2, count), np.inf).min(axis=0)
+    known_at = np.flatnonzero(np.isfinite(first))
+    at = np.full((count, 2), np.nan)
+    if len(known_at):  # the steps are the same again
+        instants = np.maximum.accumulate(first[known_at])
+        _, volume = rod.integrate(instants, length, end)
+        at[known_at] = (1 + rod.arguments["numbers"][0]) * _rod_depth(rod, volume)
+    return at
