@@ -33,7 +33,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "time_to_depth": Output(
         "s",
-        "time until the rod's scar at the site is as deep",
+        "time until the rod's scar at the site reaches the depth",
         "lifetime",
         ("site", "depth"),
         accuracy="accuracy",
@@ -48,7 +48,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "first_time_to_depth": Output(
         "s",
-        "time until the rod's scar at either site is as deep",
+        "time until the rod's scar at either site reaches the depth",
         "lifetime",
         ("depth",),
         accuracy="accuracy",

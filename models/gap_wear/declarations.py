@@ -162,7 +162,7 @@ def coordinates(settings: GapWearSettings) -> Mapping[str, Sequence[Any]]:
 
 
 _EVENTS: Mapping[str, tuple[str, tuple[str, ...]]] = {
-    "time_to_depth": ("time until the rod's scar is as deep", ("depth",)),
+    "time_to_depth": ("time until the rod's scar reaches the depth", ("depth",)),
     "time_to_gap_growth": ("time until the gap has grown, by wear or by itself", ("growth",)),
     "time_to_opening": ("time until the gap is open", ()),
 }
