@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 
 from models.gap_wear.declarations import FACTORS, GapWearParameters, GapWearSettings
 from models.numerics import duty as duty_states
-from models.numerics.duty import OFFSET, TIME, WEAR, duty_numbers, end_of_state, history_numbers
+from models.numerics.duty import (
+    OFFSET,
+    TIME,
+    WEAR,
+    duty_numbers,
+    end_of_state,
+    history_numbers,
+    offset_of_state,
+)
 from models.numerics.gap_drift import drift, drift_clock, drift_passes, next_kink
 from models.numerics.jit import kernel
 from models.numerics.scars import scar, scar_depth
@@ -70,19 +78,9 @@ def _worn_depth(v, p):
 
 
 @kernel
-def _offset(state, p):
-    """Return the offset of the gap in a state; in mixed duty the largest of all states."""
-    if p.in_sequence:
-        return p.duty[state % len(p.duty), OFFSET]
-    largest = p.duty[0, OFFSET]
-    for i in range(1, len(p.duty)):
-        largest = max(largest, p.duty[i, OFFSET])
-    return largest
-
-
-@kernel
 def _coordinates(v, t, state, p, x):
-    x[0] = p.gap + _worn_depth(v, p) + drift(t, p.drift, p.history) + _offset(state, p)  # Eq. (3)
+    offset = offset_of_state(state, p.duty, p.in_sequence)
+    x[0] = p.gap + _worn_depth(v, p) + drift(t, p.drift, p.history) + offset  # Eq. (3)
 
 
 @kernel
@@ -103,7 +101,7 @@ def _rates(v, x, t, state, p, rate, noise):
     if p.in_sequence:
         rate[0] = _rate(x[0], v, t, state % len(p.duty), p)
         return
-    gap = x[0] - _offset(state, p)
+    gap = x[0] - offset_of_state(state, p.duty, p.in_sequence)
     rate[0] = 0.0
     for i in range(len(p.duty)):
         rate[0] += p.duty[i, TIME] * _rate(gap + p.duty[i, OFFSET], v, t, i, p)

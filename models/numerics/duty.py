@@ -117,3 +117,14 @@ def end_of_state(state, duty):
     """Return the end of state number 0, 1, 2, ... of a sequence that repeats [s]."""
     count = len(duty)
     return (state // count) * duty[count - 1, TIME] + duty[state % count, TIME]
+
+
+@kernel
+def offset_of_state(state, duty, in_sequence):
+    """Return the offset of the gaps in a state [m]; in mixed duty the largest of all states."""
+    if in_sequence:
+        return duty[state % len(duty), OFFSET]
+    largest = duty[0, OFFSET]
+    for s in range(1, len(duty)):
+        largest = max(largest, duty[s, OFFSET])
+    return largest

@@ -305,10 +305,10 @@ def weighted_moments(
        Biom. Bull. 2, 110-114 (1946).
     """
     mean, sd = moments_of_rows(values, weights, dependence)
-    differ = tail_shape(dependence.sums_of_samples(weights)) > -inf
+    of_samples = dependence.sums_of_samples(weights)
+    differ = tail_shape(of_samples) > -inf
     if differ and mean.has_interval:
         mean = _with_freedom_of_kurtosis(mean, weighted_part_means(values, weights, dependence))
-    of_samples = dependence.sums_of_samples(weights)
     why = too_large(largest_share(of_samples), len(of_samples)) if differ else ""
     return if_reliable(mean, weights, dependence), Estimate(reason=why) if why else sd
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from models.beam.parameters import FACTORS
 from models.numerics import duty as duty_states
-from models.numerics.duty import OFFSET, TIME, WEAR, end_of_state
+from models.numerics.duty import OFFSET, TIME, WEAR, end_of_state, offset_of_state
 from models.numerics.gap_drift import drift, drift_clock, drift_falls, drift_passes, next_kink
 from models.numerics.jit import kernel
 from models.numerics.scars import scar_depth
@@ -88,19 +88,8 @@ def _worn_depth(v, i, p):
 
 
 @kernel
-def _offset(state, p):
-    """Return the offset of the gaps in a state; in mixed duty the largest of all states."""
-    if p.in_sequence:
-        return p.duty[state % len(p.duty), OFFSET]
-    largest = p.duty[0, OFFSET]
-    for s in range(1, len(p.duty)):
-        largest = max(largest, p.duty[s, OFFSET])
-    return largest
-
-
-@kernel
 def _coordinates(v, t, state, p, x):
-    moved = drift(t, p.drift, p.history) + _offset(state, p)
+    moved = drift(t, p.drift, p.history) + offset_of_state(state, p.duty, p.in_sequence)
     for i in range(2):
         x[i] = p.gap[i] + _worn_depth(v, i, p) + moved  # Eq. (3)
 
@@ -135,7 +124,7 @@ def _wear(k, work, t, depth, volume, p):
 @kernel
 def _rates(v, x, t, state, p, rate, noise):
     rate[0] = rate[1] = 0.0
-    base = _offset(state, p)
+    base = offset_of_state(state, p.duty, p.in_sequence)
     is_asked = False
     for s in range(len(p.duty)):
         shift = p.duty[s, OFFSET] - base
