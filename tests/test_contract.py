@@ -303,6 +303,79 @@ def test_scales_are_exact(model, far):
             assert cut[censored_name(name)][ended].all()
 
 
+DRAWN = [
+    ("scar", ("prismatic", "flat-bar", "dimple", "inclined")),
+    (
+        ("wear_law", "wear_law_numbers"),
+        (
+            ("archard", ()),
+            ("power", (("exponent", 1.3), ("threshold", 0.2))),
+            ("running-in", (("share", 0.3), ("volume", 1e-11))),
+            ("edf", (("exponent", 1.2),)),
+        ),
+    ),
+    (
+        ("duty", "order"),
+        (
+            ((), "mixed"),
+            (((("share", 0.5),), (("share", 0.3), ("force", 0.9))), "mixed"),
+            (((("duration", 1e3),), (("duration", 2e3), ("wear", 0.0))), "sequence"),
+        ),
+    ),
+    ("gap_history", ((), ((0.0, 0.0), (1e6, 1e-6)))),
+]
+"""Settings of the beam on which its scaling exponents depend, and values to draw from."""
+
+
+def drawn_settings(model, seed):
+    rng = np.random.default_rng(seed)
+    choices = {"depths": (2e-5, 4e-5), "accuracy": 0.05}
+    for names, values in DRAWN:
+        value = values[rng.integers(len(values)) if rng.random() < 0.6 else 0]
+        choices |= (
+            {names: value} if isinstance(names, str) else dict(zip(names, value, strict=True))
+        )
+    return model.settings(**choices)
+
+
+def power_of(model, settings, base, name, outputs):
+    """Return the exponent of a parameter in lives near a row; NaN if they are no power of it."""
+    place = model.parameter_names.index(name)
+    x = np.repeat(base[None], 3, axis=0)
+    x[:, place] *= [1.0, 1.01, 1.03]
+    columns = run(model, settings, x, np.zeros(3, np.uint64))
+    lives = np.concatenate([columns[name].reshape(3, -1) for name in outputs], axis=1)
+    lives = lives[:, np.isfinite(lives).all(axis=0)]
+    exponents = np.diff(np.log(lives), axis=0) / np.diff(np.log(x[:, place]))[:, None]
+    is_power = exponents.size and np.ptp(exponents) < 1e-6
+    return round(float(exponents.mean()), 4) if is_power else np.nan
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(4), *(pytest.param(s, marks=pytest.mark.slow) for s in range(4, 40))]
+)
+def test_under_drawn_settings_lives_scale_as_declared_and_in_no_other_input(seed):
+    model = find_model("beam")
+    settings = drawn_settings(model, seed)
+    rng = np.random.default_rng(seed)
+    base = np.array(list(model.nominal.values()))
+    names = ("support_wear_ratio", "oxide_thickness", "oxide_wear_factor", "creep_down")
+    for name, value in zip(names, (0.5, 1e-5, 0.3, 3e-6), strict=True):
+        if rng.random() < 0.3:
+            base[model.parameter_names.index(name)] = value
+    constants = dict(zip(model.parameter_names, base.tolist(), strict=True))
+    given = model.given(settings, constants).outputs
+    outputs = ("time_to_depth", "first_time_to_depth")
+    candidates = (
+        "wear_coefficient", "contact_area", "rod_radius", "support_width", "support_radius",
+        "support_inclination", "initial_gap", "wear_coefficient_ratio",
+    )  # fmt: skip
+    exponents = {name: power_of(model, settings, base, name, outputs) for name in candidates}
+    shown = {name: e for name, e in exponents.items() if e and not np.isnan(e)}
+    assert shown == given["first_time_to_depth"].exponents
+    assert given["time_to_depth"].exponents == given["first_time_to_depth"].exponents
+
+
 @but_slowly("mole")
 @pytest.mark.parametrize("rows", [2, pytest.param(16, marks=pytest.mark.slow)])
 def test_corners_of_the_bounds_end_with_a_status(model, settings, rows):

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from models.beam.parameters import PERIODS, REGIMES, SITES, Settings
-from models.beam.processes import scales
+from models.beam.processes import linear_scales, scales
 from uq.contract import Output
 
 
@@ -67,7 +67,7 @@ OUTPUTS: Mapping[str, Output] = {
         "lifetime",
         ("depth",),
         may_be_censored=False,
-        scales=scales,
+        scales=linear_scales,
     ),
     "lifetime_ratio": Output(
         "1",
@@ -92,6 +92,19 @@ OUTPUTS: Mapping[str, Output] = {
         "larger worn depth of the two sites, at most the last of the depths, at the instant",
         dims=("instant",),
     ),
+    "gap": Output(
+        "m",
+        "gap of the site at the instant, without the offset of a duty state; undefined once the"
+        " scar has the last of the depths",
+        dims=("site", "instant"),
+        may_be_undefined=True,
+    ),
+    "wear_share": Output(
+        "1",
+        "share of the gap's growth until the instant that is by wear",
+        dims=("site", "instant"),
+        may_be_undefined=True,
+    ),
     "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),
     "period": Output(
         "1", "period of the response in forcing periods", "category", categories=PERIODS
@@ -112,6 +125,7 @@ OUTPUTS: Mapping[str, Output] = {
         ("site", "growth"),
         accuracy="accuracy",
         never_known_at_once=False,
+        scales=scales,
     ),
     "time_to_gap_growth_error": Output(
         "s",

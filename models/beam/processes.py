@@ -5,16 +5,16 @@ from typing import Any
 
 from models.beam.parameters import Settings
 
-_LIFE_SCALES = {"wear_coefficient": -1.0, "contact_area": 1.0}  # eq 12: gaps grow with their ratio
+_CLOCKS = ("creep_down", "preload_deflection", "swelling_rate")
+"""Parameters that are above 0 where a gap moves by itself."""
 
-_SWITCHES = (
-    "support_wear_ratio",
-    "creep_down",
-    "preload_deflection",
-    "swelling_rate",
-    "oxide_thickness",
-)
-"""Parameters that are above 0 where a process is on."""
+_SCAR_SCALES: Mapping[str, Mapping[str, float]] = {
+    "prismatic": {"contact_area": 1.0},
+    "flat-bar": {"support_width": 1.0, "rod_radius": 0.5},
+    "dimple": {"rod_radius": 0.5, "support_radius": 0.5},
+    "inclined": {"rod_radius": 0.5},
+}
+"""Exponents of B, the volume of a scar over a power of its depth."""
 
 
 def is_neutral(settings: Settings) -> bool:
@@ -30,11 +30,37 @@ def has_processes(p: Any, settings: Settings) -> Any:
     return moves | (p.support_wear_ratio > 0) | is_oxidised | (not is_neutral(settings))
 
 
-def scales(settings: Settings, constants: Mapping[str, float]) -> Mapping[str, float]:
-    """Return the scaling exponents of lives; none where a process may be on.
+def has_clock(p: Any, settings: Settings) -> Any:
+    """Return whether a process keeps time by itself, not by the wear; of n beams a mask."""
+    moves = (p.creep_down > 0) | (p.preload_deflection > 0) | (p.swelling_rate > 0)
+    return moves | _has_clock(settings)
 
-    With clocks of their own, processes do not follow the wear. Also where the equations scale,
-    as with other scars, lives are integrated row by row: not to the last digits the same.
+
+def _has_clock(settings: Settings) -> bool:
+    in_sequence = bool(settings.duty) and settings.order == "sequence"
+    return bool(settings.gap_history) or settings.wear_law == "edf" or in_sequence
+
+
+def scar_scales(settings: Settings) -> Mapping[str, float]:
+    """Return the exponents of the parameters that only scale lives by the size of the scars.
+
+    None if the rate of wear depends on the volume of the scar.
     """
-    is_off = all(constants.get(name) == 0 for name in _SWITCHES)
-    return _LIFE_SCALES if is_off and is_neutral(settings) else {}
+    return {} if settings.wear_law == "running-in" else _SCAR_SCALES[settings.scar]
+
+
+def scales(settings: Settings, constants: Mapping[str, float]) -> Mapping[str, float]:
+    """Return the scaling exponents of lives, T ~ B/k; none where a process may keep its own time.
+
+    With scars of any shape, wear of both bodies, oxide, laws of wear that depend on work-rate or
+    depth, and mixed duty, the wear coefficient k and the size B of the scars set the time scale.
+    """
+    is_off = all(constants.get(name) == 0 for name in _CLOCKS)
+    if not is_off or _has_clock(settings):
+        return {}
+    return {"wear_coefficient": -1.0, **scar_scales(settings)}
+
+
+def linear_scales(settings: Settings, constants: Mapping[str, float]) -> Mapping[str, float]:
+    """Return the scaling exponents of lives at constant work-rates by Archard's law."""
+    return {"wear_coefficient": -1.0, **_SCAR_SCALES[settings.scar]}

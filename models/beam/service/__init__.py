@@ -15,5 +15,6 @@ Reading order; a module imports only those above it:
     growth          the equations as kernels of the integrator of slow time
     responses       settled responses of many rods, each from the one before it
     lives           rows integrated by turns, each as far as its responses go
+    shared_lives    rows that differ only in what scales their lives
     batch           from rows of parameters to outputs
 """

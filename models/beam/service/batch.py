@@ -12,10 +12,10 @@ from models.beam.processes import has_processes
 from models.beam.service.lives import (
     ServiceLives,
     drift_of,
-    find_service_lives,
     gaps_when_new,
     scars_of,
 )
+from models.beam.service.shared_lives import find_shared_lives
 from models.beam.start import wear_shares
 from models.beam.structure.modal import Array
 from models.numerics.duty import history_numbers
@@ -56,6 +56,8 @@ def batch(x: Array, seed: NDArray[np.uint64], settings: Settings) -> _Batch:
     slow = has_processes(p, settings)
     outputs, status = of_the_beam.batch(x, seed, settings, ~slow)
     _add_openings(outputs)
+    if settings.instants:
+        _add_gaps(outputs, p, settings)
     if settings.growths:
         _add_growths(outputs, x, seed, settings, ~slow)
     refused = _refused(p, settings)
@@ -64,7 +66,7 @@ def batch(x: Array, seed: NDArray[np.uint64], settings: Settings) -> _Batch:
     if len(rows):
         q: Rows = Params._make(field[rows] for field in p)
         shares = np.where(q.random_force_level > 0, seed[rows], np.uint64(0))
-        lives = find_service_lives(q, settings, shares)
+        lives = find_shared_lives(q, settings, shares)
         status[rows] = _note(outputs, rows, q, lives, settings)
     for i in refused:
         status[i] = Status.NON_FINITE
@@ -89,6 +91,22 @@ def _add_openings(outputs: dict[str, NDArray[Any]]) -> None:
     opened = np.where(np.isnan(sites), np.nan, 0.0)
     outputs["time_to_opening"], outputs["time_to_opening_error"] = opened, opened.copy()
     outputs["time_to_opening_censored"] = np.zeros(sites.shape, bool)
+
+
+def _add_gaps(outputs: dict[str, NDArray[Any]], p: Rows, settings: Settings) -> None:
+    """Add the gaps at the instants, and the shares of their growth by wear, from worn depths.
+
+    Both are NaN once the scar has the last of the depths.
+    """
+    history, c = history_numbers(settings.gap_history), drift_of(p)
+    moved = np.array([[drift(t, row, history) for t in settings.instants] for row in c])
+    is_known = outputs["worn_depth"] < settings.depths[-1]
+    worn = np.where(is_known, outputs["worn_depth"], np.nan)
+    by_wear = (1 + p.support_wear_ratio)[:, None, None] * worn
+    grown = by_wear + moved[:, None]
+    outputs["gap"] = gaps_when_new(p)[:, :, None] + grown
+    share = np.full_like(grown, np.nan)
+    outputs["wear_share"] = np.divide(by_wear, grown, out=share, where=grown > 0)
 
 
 def _add_growths(
@@ -153,6 +171,10 @@ def _note(
         worn = np.minimum(lives.worn, settings.depths[-1]).transpose(0, 2, 1)
         outputs["worn_depth"][rows] = worn
         outputs["largest_worn_depth"][rows] = worn.max(axis=1)
+        part = {"worn_depth": worn}
+        _add_gaps(part, p, settings)
+        for name in ("gap", "wear_share"):
+            outputs[name][rows] = part[name]
     status = np.where(lives.lost | lives.unfinished, Status.OUT_OF_BUDGET, Status.OK)
     return status.astype(np.int8)
 

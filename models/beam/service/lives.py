@@ -15,7 +15,8 @@ from models.numerics.scars import Scar, scar, scar_depth
 from models.numerics.slow_time import NEVER, PENDING, REACHED
 from models.numerics.wear_laws.laws import law_numbers
 
-_LONGEST = 1e12  # s, of a life without a horizon
+LONGEST = 1e12
+"""Of a life without a horizon [s]."""
 
 
 class ServiceLives(NamedTuple):
@@ -46,6 +47,10 @@ class ServiceLives(NamedTuple):
     changes: Array
     lost: NDArray[np.bool_]
     unfinished: NDArray[np.bool_]
+
+    def take(self, rows: NDArray[np.intp]) -> "ServiceLives":
+        """Return copies of some of them, in their order."""
+        return ServiceLives._make(field[rows] for field in self)
 
 
 def scars_of(p: Rows, settings: Settings) -> Scar:
@@ -99,7 +104,9 @@ class _Row:
         return time, volume
 
 
-def find_service_lives(p: Rows, settings: Settings, seed: NDArray[np.uint64]) -> ServiceLives:
+def find_service_lives(
+    p: Rows, settings: Settings, seed: NDArray[np.uint64], end: Array, clock: Array
+) -> ServiceLives:
     """Find the lives of n rods.
 
     Parameters
@@ -109,29 +116,33 @@ def find_service_lives(p: Rows, settings: Settings, seed: NDArray[np.uint64]) ->
     settings : Settings
     seed : ndarray of uint64, shape (n,)
         Of the random force.
+    end : ndarray, shape (n,)
+        Time at which lives are censored, at most `LONGEST` [s].
+    clock : ndarray, shape (n,)
+        Unit of the instants in `settings`.
 
     Returns
     -------
     ServiceLives
     """
-    n, end = len(seed), min(settings.horizon, _LONGEST)
-    instants = np.array(settings.instants, float)
+    n = len(seed)
+    instants = np.array(settings.instants, float) / clock[:, None]
     length = float(np.sqrt(settings.accuracy))  # the error is of second order in it
     duty = duty_numbers(settings.duty, settings.order, FACTORS)
     responses = Responses(p, duty, settings, seed)
     rods = _rows(p, settings, duty, responses.reach)
     until = np.zeros(n)
-    worn = np.full((n, len(instants), 2), np.nan)
+    worn = np.full((n, instants.shape[1], 2), np.nan)
     lost, unfinished = np.zeros((2, n), bool)
     left = list(range(n))
     while left:
         asking = []
         for i in left:
-            until[i], worn[i] = rods[i].integrate(instants, length, end)
+            until[i], worn[i] = rods[i].integrate(instants[i], length, end[i])
             used = rods[i].cursor[AVAILABLE]
             if not rods[i].cursor[IS_MISSING]:
                 pending = bool((rods[i].fate == PENDING).any())
-                unfinished[i] = pending and until[i] < settings.horizon
+                unfinished[i] = pending and until[i] < end[i]
             elif used == settings.response_budget:
                 unfinished[i] = True
             else:
@@ -155,7 +166,7 @@ def find_service_lives(p: Rows, settings: Settings, seed: NDArray[np.uint64]) ->
     time[lost], error[lost], pending[lost] = np.nan, np.nan, False
     changes = np.array([responses.regime_changes(i) for i in range(n)], float)
     reached = fate == REACHED
-    at_depth = np.stack([_gaps_at_depths(rod, length, end) for rod in rods])
+    at_depth = np.stack([_gaps_at_depths(rods[i], length, end[i]) for i in range(n)])
     worn = np.stack([_rod_depth(rod, volume) for rod, volume in zip(rods, worn, strict=True)])
     return ServiceLives(
         time, error, pending, reached, worn, at_depth, changes, lost, unfinished & ~lost

@@ -194,26 +194,68 @@ def test_an_oxide_and_a_law_of_wear_change_the_rate():
 @pytest.mark.parametrize(
     ("on", "choices"),
     [
-        ({"support_wear_ratio": 1.0}, {}),
         ({"creep_down": 1e-6}, {}),
         ({"preload_deflection": 1e-5}, {}),
         ({"swelling_rate": 1e-12}, {}),
-        ({"oxide_thickness": 1e-5, "oxide_wear_factor": 0.5}, {}),
-        ({}, {"scar": "flat-bar"}),
         ({}, {"wear_law": "edf"}),
-        ({}, {"duty": (table(share=0.5),)}),
+        ({}, {"duty": (table(duration=1e3),), "order": "sequence"}),
         ({}, {"gap_history": ((0.0, 0.0), (1e7, 1e-5))}),
     ],
 )
-def test_what_only_scales_lives_does_so_while_no_process_is_on(on, choices):
+def test_nothing_only_scales_lives_where_a_process_keeps_its_own_time(on, choices):
     neutral, settings = MODEL.nominal, Settings(**choices)
     name = "first_time_to_depth"
-    expected = {"wear_coefficient": -1.0, "contact_area": 1.0}
-    assert MODEL.given(Settings(), neutral).outputs[name].exponents == expected
-    assert MODEL.given(settings, neutral | on).outputs[name].exponents == {}
     varied = {key: value for key, value in neutral.items() if key not in on}
-    assert MODEL.given(settings, varied).outputs[name].exponents == {}
-    unused = {
-        key: value for key, value in neutral.items() if key not in ("creep_time", "rod_radius")
-    }
+    for constants in (neutral | on, varied):
+        exponents = MODEL.given(settings, constants).outputs[name].exponents
+        assert exponents == {} or not (on or choices)
+    unused = {key: value for key, value in neutral.items() if key != "creep_time"}
+    expected = {"wear_coefficient": -1.0, "contact_area": 1.0}
     assert MODEL.given(Settings(), unused).outputs[name].exponents == expected
+
+
+def test_rods_that_differ_in_scale_alone_are_integrated_once():
+    x = rows(1, wear_coefficient=1e-14)
+    many = np.tile(x, (400, 1))
+    many[:, FIELDS.index("wear_coefficient")] = np.geomspace(1e-16, 1e-12, 400)
+    choices = {"scar": "flat-bar", "duty": (table(share=0.5),), "horizon": 1e4}
+    outputs = lives(many, **choices)
+    alone = lives(many[:1], **choices)
+    life = outputs["first_time_to_depth"][:, 0]
+    cut = life == 1e4
+    assert cut.any() and not cut.all()
+    assert (outputs["first_time_to_depth_censored"][:, 0] == cut).all()
+    np.testing.assert_array_equal(life[0], alone["first_time_to_depth"][0, 0])
+    unit = (life * many[:, FIELDS.index("wear_coefficient")])[~cut]
+    np.testing.assert_allclose(unit, unit[-1], rtol=1e-12)
+
+
+def test_a_sequence_that_repeats_often_is_mixed_and_its_error_says_so():
+    x = rows(wear_coefficient=1e-15)
+    states = table(duration=10.0), table(duration=30.0, wear=0.0, force=0.5)
+    mixed = lives(x, duty=(table(share=0.25), table(share=0.75, wear=0.0, force=0.5)))
+    turns = lives(x, duty=states, order="sequence")
+    np.testing.assert_array_equal(turns["time_to_depth"], mixed["time_to_depth"])
+    np.testing.assert_allclose(
+        turns["time_to_depth_error"], mixed["time_to_depth_error"] + 40.0, rtol=1e-12
+    )
+    long = table(duration=3e4), table(duration=9e4, wear=0.0, force=0.5)
+    slow = lives(x, duty=long, order="sequence")["time_to_depth"]
+    operated = mixed["time_to_depth"] / 4
+    np.testing.assert_allclose(slow, operated + 9e4 * np.floor(operated / 3e4), rtol=0.02)
+
+
+def test_the_gap_at_an_instant_is_what_wear_and_creep_have_opened():
+    p = {"creep_down": 2e-5, "creep_time": 1e4, "support_wear_ratio": 1.0}
+    instants = (1e3, 3e3, 1e7)
+    outputs = lives(rows(**p), instants=instants, growths=(1e-6, 1e-5))
+    moved = -2e-5 * np.expm1(-np.array(instants) / 1e4)
+    worn, gap = outputs["worn_depth"][0], outputs["gap"][0]
+    np.testing.assert_allclose((gap - Params().initial_gap - moved)[:, :2], 2 * worn[:, :2])
+    assert np.isnan(gap[:, 2]).all() and np.isnan(outputs["wear_share"][0, :, 2]).all()
+    np.testing.assert_allclose(
+        outputs["wear_share"][0, :, :2], 2 * worn[:, :2] / (2 * worn + moved)[:, :2]
+    )
+    plain = lives(rows(), instants=(1e3,))
+    np.testing.assert_allclose(plain["gap"], Params().initial_gap + plain["worn_depth"])
+    assert (plain["wear_share"] == 1).all()
