@@ -17,6 +17,7 @@ from .assess.what_if import what_if as what_if
 from .errors import InputError as InputError
 from .errors import RunError as RunError
 from .execution.loading import load_study as load_study
+from .execution.recomputed_result import recompute as recompute
 from .execution.runner import run as run
 from .explore.basins import basins as basins
 from .explore.rare_events import rare_event as rare_event

@@ -120,6 +120,8 @@ class Output:
     never_known_at_once : bool
         For lifetimes only: whether a life that never ends is recognised before any row is
         censored, so that every censored row would end later.
+    shown : bool
+        Whether tables that name no outputs show it; if not, it is for `Model.again`.
     scales : dict of str to float, or callable
         For lifetimes only: scaling exponent of each parameter. Within the bounds of these
         parameters the life is exactly proportional to the product of their powers, except for
@@ -139,6 +141,7 @@ class Output:
     accuracy: str = ""
     success: str = ""
     never_known_at_once: bool = True
+    shown: bool = True
     scales: Mapping[str, float] | Scales = field(default_factory=dict, hash=False)
 
     @property
@@ -292,6 +295,30 @@ Batch = Callable[
 Row i depends only on x[i], seed[i] and settings."""
 
 
+class Kept(NamedTuple):
+    """Rows of a result, from which a model computes them again under other inputs and settings.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n, d)
+    settings : object
+    outputs : dict of str to ndarray, shape (n, *dims)
+        All outputs, with the flags of censored lives.
+    """
+
+    x: Floats
+    settings: Any
+    outputs: Mapping[str, NDArray[Any]]
+
+
+Again = Callable[
+    [Floats, NDArray[np.uint64], Any, Kept],
+    tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]],
+]
+"""``again(x, seed, settings, kept)``: as `Batch`, from `kept` rows with the same seeds; a
+ValueError, in one line, where an input or a setting differs that it cannot change."""
+
+
 def _no_coordinates(settings: Any) -> Mapping[str, Sequence[Any]]:
     return {}
 
@@ -334,6 +361,8 @@ class Model:
         seed, so that noise is not attributed to an input.
     random_unless : dict of str to float
         Parameter -> the value at which a random model is deterministic, such as a noise level of 0.
+    again : callable, optional
+        See `Again`: computes rows again from what earlier ones kept, at a fraction of the cost.
     block : int
         Number of rows that the kernel advances together; shorter chunks are less efficient.
     references : tuple of str
@@ -359,6 +388,7 @@ class Model:
     cheap: Mapping[str, Batch] = field(default_factory=dict)
     random: bool = False
     random_unless: Mapping[str, float] = field(default_factory=dict)
+    again: Again | None = None
     block: int = 1
     references: tuple[str, ...] = ()
     headline: tuple[str, ...] = ()

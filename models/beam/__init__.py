@@ -29,13 +29,19 @@ from typing import Any
 from models.beam.outputs import OUTPUTS, coordinates
 from models.beam.parameters import Params, Settings
 from models.beam.uncertain import UNCERTAIN
-from uq.contract import Model, Trajectory
+from uq.contract import Kept, Model, Trajectory
 
 
 def _batch(x: Any, seed: Any, settings: Settings) -> Any:
     from models.beam.service.batch import batch  # imports numba only when needed
 
     return batch(x, seed, settings)
+
+
+def _again(x: Any, seed: Any, settings: Settings, kept: Kept) -> Any:
+    from models.beam.service.again import again
+
+    return again(x, seed, settings, kept)
 
 
 def _simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
@@ -47,7 +53,7 @@ def _simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
 MODEL = Model(
     name="beam",
     title="loosely supported beam rattling between two elastic stops that wear",
-    version="9",
+    version="10",
     parameters=Params,
     settings=Settings,
     outputs=OUTPUTS,
@@ -58,9 +64,12 @@ MODEL = Model(
         "depth": ("m", "depth of the rod's scar"),
         "instant": ("s", "time since wear began"),
         "growth": ("m", "growth of the gap"),
+        "right_growth": ("m", "growth of the right gap"),
+        "left_growth": ("m", "growth of the left gap"),
     },
     random=True,
     random_unless={"random_force_level": 0.0},
+    again=_again,
     block=1024,
     references=(
         "J. Knudsen, A. R. Massih, Impact work-rate and wear of a loosely supported beam subject "

@@ -1,5 +1,6 @@
 """Outputs of the beam, each declared once."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -7,10 +8,33 @@ from models.beam.parameters import PERIODS, REGIMES, SITES, Settings
 from models.beam.processes import linear_scales, scales
 from uq.contract import Output
 
+MAP_NODES = 6
+"""Growths of each gap at which work-rates are mapped."""
+
+MAP_POSITIONS = tuple(
+    0.5 - 0.5 * math.cos(math.pi * (node + 0.5) / MAP_NODES) for node in range(MAP_NODES)
+)
+"""These growths over the largest one: zeros of a Chebyshev polynomial."""
+
+
+def _state_names(settings: Settings) -> tuple[str, ...]:
+    """Return the names of the states of duty, or their numbers if they have none of their own."""
+    numbers = [str(number) for number in range(1, len(settings.duty) + 1)]
+    names = [
+        str(dict(state).get("name", number))
+        for state, number in zip(settings.duty, numbers, strict=True)
+    ]
+    return tuple((names if len(set(names)) == len(names) else numbers) or ("operation",))
+
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
     """Return the coordinates of the outputs' dimensions."""
+    is_mapped = settings.map_growth > 0
+    growths = [settings.map_growth * position for position in MAP_POSITIONS * is_mapped]
     return {
+        "state": _state_names(settings) if is_mapped else (),
+        "right_growth": growths,
+        "left_growth": growths,
         "site": SITES,
         "depth": settings.depths,
         "instant": settings.instants,
@@ -144,5 +168,26 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "time_to_opening_error": Output(
         "s", "numerical error of the time to opening", dims=("site",), may_be_undefined=True
+    ),
+    "mapped_gap": Output(
+        "m",
+        "gap of the site from which its growth counts in mapped_work_rate",
+        dims=("state", "site"),
+        may_be_undefined=True,
+        shown=False,
+    ),
+    "mapped_work_rate": Output(
+        "W",
+        "work-rate of the site under the random force of a state of duty, by growth of both gaps",
+        dims=("state", "site", "right_growth", "left_growth"),
+        may_be_undefined=True,
+        shown=False,
+    ),
+    "mapped_work_rate_error": Output(
+        "W",
+        "standard error of the mapped work-rate",
+        dims=("state", "site", "right_growth", "left_growth"),
+        may_be_undefined=True,
+        shown=False,
     ),
 }

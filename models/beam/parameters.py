@@ -228,6 +228,15 @@ class Settings:
     order: Annotated[
         str, Setting("whether the states of duty mix or follow each other", choices=ORDERS)
     ] = "mixed"
+    map_growth: Annotated[
+        float,
+        Setting(
+            "growth of each gap up to which the work-rates of rods under a random force are mapped"
+            " and kept, so that lives under other wear, creep and duty need no new rows; 0: none",
+            "m",
+            bounds=(0.0, 1e-1),
+        ),
+    ] = 0.0
     response_budget: Annotated[
         int,
         Setting(

@@ -24,10 +24,12 @@ def is_neutral(settings: Settings) -> bool:
 
 
 def has_processes(p: Any, settings: Settings) -> Any:
-    """Return whether a process beside wear by impact is on; of n beams a mask."""
+    """Return whether a process beside wear by impact is on, or a map is made; of n a mask."""
     is_oxidised = (p.oxide_thickness > 0) & (p.oxide_wear_factor != 1)
     moves = (p.creep_down > 0) | (p.preload_deflection > 0) | (p.swelling_rate > 0)
-    return moves | (p.support_wear_ratio > 0) | is_oxidised | (not is_neutral(settings))
+    is_mapped = (p.random_force_level > 0) & (settings.map_growth > 0)
+    is_on = moves | (p.support_wear_ratio > 0) | is_oxidised | is_mapped
+    return is_on | (not is_neutral(settings))
 
 
 def has_clock(p: Any, settings: Settings) -> Any:

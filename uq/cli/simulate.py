@@ -152,6 +152,8 @@ def _show(row: Row) -> None:
 def show_outputs(row: Row) -> None:
     """Print every output of a row, with its unit and meaning."""
     for name, output in row.model.outputs.items():
+        if not output.shown:
+            continue
         if output.is_category:
             heading(f"\n{name}", readable(output.meaning))
             grid([("", _plain(row.model, name, row.columns[name][0]) or "none")])

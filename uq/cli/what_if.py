@@ -2,29 +2,60 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
-from math import isfinite
+from math import inf, isfinite, nan
 from pathlib import Path
+
+import numpy as np
 
 from uq.assess.pairing import WORST
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.statistics.counts import NEVER_ENDING
 from uq.assess.summary import summarise
-from uq.assess.what_if import read_changes, reweighted_summary, what_if_facts
+from uq.assess.what_if import WhatIf, read_changes, reweighted_summary, what_if_facts
 from uq.cli.printing import console, grid, heading, note, paragraph, print_json, title
+from uq.errors import InputError
+from uq.files.whole_files import write_result
 from uq.result.result import Result
 from uq.stats import two_samples
 from uq.stats.estimate import Estimate, rounded_text
+from uq.stats.importance_weights import ImportanceWeights
 from uq.text.numbers import compared, estimated, in_brackets, number, percent, percent_range
 from uq.text.units import readable, typical, unit_of
 
 _HEADER = ("", "as studied", "changed", "difference")
+_AGAIN = ("settings.", "fixed.")
+"""Changes with which rows are computed again instead of weighted."""
+
 _PROBABILITIES = ("thresholds", NEVER_ENDING)
 
 
-def what_if(path: Path, texts: Sequence[str], json: bool) -> None:
-    """Print the statistics of a result as studied, under other laws, and their differences."""
+def what_if(path: Path, texts: Sequence[str], target: Path | None, json: bool) -> None:
+    """Print the statistics of a result as studied, under changes, and their differences.
+
+    Other laws of inputs weight the rows; other settings and fixed inputs compute them again, from
+    what they have kept. `target` is where that result is written.
+    """
     result = Result.open(path)
-    changed = reweighted_summary(result, read_changes(texts))
+    changes = read_changes(texts)
+    laws = {place: value for place, value in changes.items() if not place.startswith(_AGAIN)}
+    others = {place: value for place, value in changes.items() if place.startswith(_AGAIN)}
+    again = result
+    if others:
+        from uq.execution.recomputed_result import recompute
+
+        if target is not None:
+            others |= {"study.name": target.stem}
+        again = Result(recompute(result, others))
+    if target is not None:
+        if not others or laws:
+            raise InputError("-o: only rows computed again are written: change settings or [fixed]")
+        write_result(again.dataset, target)
+    if laws:
+        changed = reweighted_summary(again, laws)
+    else:
+        n = len(again)
+        equal = ImportanceWeights(np.ones(n), -inf, n, float(n))
+        changed = WhatIf(summarise(again), float(n), nan, equal)
     if json:
         print_json(what_if_facts(changed).json)
         return
@@ -55,9 +86,13 @@ def what_if(path: Path, texts: Sequence[str], json: bool) -> None:
             paragraph(text, indent=2)
     for text in changed.summary.notes:
         note(text)
+    weighted = f"weighted: worth {changed.effective_rows:.0f} independent ones"
+    if isfinite(changed.pareto_k):
+        weighted += f"; Pareto k = {changed.pareto_k:.2f}"
+    ways = ["computed again from what they have kept"] * bool(others) + [weighted] * bool(laws)
     note(
-        f"The same rows, weighted: worth {changed.effective_rows:.0f} independent ones"
-        + (f"; Pareto k = {changed.pareto_k:.2f}." if isfinite(changed.pareto_k) else ".")
+        f"The same rows, {', '.join(ways)}."
+        + (target is not None) * " 'uq compare' shows the difference row by row."
         + " Below each value is its 95 % interval, conservative for a difference: it allows for any"
         " correlation of the two estimates. *: the interval excludes zero. Differences of"
         " probabilities are in percentage points."

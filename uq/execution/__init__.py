@@ -17,6 +17,7 @@ Reading order; each part imports only those above it:
     loading         load studies and models
     clusters        dask workers of this computer, or of an existing cluster
     recomputed_row  recomputation of a stored row, and its comparison with the stored values
+    recomputed_result  a result computed again from what its rows have kept
     single_row      one row of a model, in a separate process if the model may crash
     executor        rows of one run
     planning        cost of a study, estimated from a few of its rows

@@ -158,7 +158,7 @@ class Result:
     def shown_outputs(self, analysis: AnalysisTable) -> tuple[str, ...]:
         """Return the outputs that an [analysis] names, or all if it names none."""
         if not analysis.outputs:
-            return self.output_names
+            return tuple(name for name, output in self.outputs.items() if output.shown)
         named = (*analysis.outputs, *analysis.thresholds, *analysis.joint_bounds)
         return tuple(dict.fromkeys(named))
 

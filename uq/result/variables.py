@@ -66,6 +66,8 @@ def output_variables(
             attrs["accuracy_setting"] = output.accuracy
         if output.is_lifetime:
             attrs["never_known_at_once"] = int(output.never_known_at_once)
+        if not output.shown:
+            attrs["shown"] = 0
         if output.success:
             attrs["success"] = output.success
         if output.exponents:
@@ -101,6 +103,7 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
             accuracy=str(variable.attrs.get("accuracy_setting", "")),
             success=str(variable.attrs.get("success", "")),
             never_known_at_once=bool(variable.attrs.get("never_known_at_once", True)),
+            shown=bool(variable.attrs.get("shown", True)),
             scales=json.loads(variable.attrs.get("scales", "{}")),
         )
         for name, variable in ds.variables.items()

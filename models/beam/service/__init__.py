@@ -12,9 +12,11 @@ U_i is the work-rate of the settled response at the gaps; Theta the offset of a 
 
 Reading order; a module imports only those above it:
 
+    work_maps       work-rates under a random force as functions of both gaps
     growth          the equations as kernels of the integrator of slow time
     responses       settled responses of many rods, each from the one before it
     lives           rows integrated by turns, each as far as its responses go
     shared_lives    rows that differ only in what scales their lives
     batch           from rows of parameters to outputs
+    again           the same from work-rates mapped before
 """

@@ -16,6 +16,7 @@ from models.beam.service.lives import (
     scars_of,
 )
 from models.beam.service.shared_lives import find_shared_lives
+from models.beam.service.work_maps import WorkMaps, no_maps
 from models.beam.start import wear_shares
 from models.beam.structure.modal import Array
 from models.numerics.duty import history_numbers
@@ -25,6 +26,8 @@ from uq.contract import Status
 
 _Beams = tuple[dict[str, NDArray[Any]], NDArray[np.int8]]
 _Batch = _Beams | tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]
+
+_MAPS = ("mapped_gap", "mapped_work_rate", "mapped_work_rate_error")
 
 _NO_OPENING = (
     "preload_deflection > 0 and nothing opens the gaps: set creep_down, or relaxed_share below 1"
@@ -55,18 +58,44 @@ def batch(x: Array, seed: NDArray[np.uint64], settings: Settings) -> _Batch:
     p: Rows = Params._make(np.ascontiguousarray(x.T))
     slow = has_processes(p, settings)
     outputs, status = of_the_beam.batch(x, seed, settings, ~slow)
-    _add_openings(outputs)
-    if settings.instants:
-        _add_gaps(outputs, p, settings)
     if settings.growths:
         _add_growths(outputs, x, seed, settings, ~slow)
-    refused = _refused(p, settings)
+    add_openings(outputs)
+    if settings.instants:
+        add_gaps(outputs, p, settings)
+    if settings.map_growth > 0:
+        _add_maps(outputs, settings)
     followed = slow & (status != Status.NON_FINITE) & ~np.isnan(outputs["work_rate_heavy"])
-    rows = np.flatnonzero(followed & ~np.isin(np.arange(len(x)), list(refused)))
+    refused = refused_rows(p, settings)
+    follow(outputs, status, p, seed, settings, followed, refused)
+    return (outputs, status, refused) if refused else (outputs, status)
+
+
+def _add_maps(outputs: dict[str, NDArray[Any]], settings: Settings) -> None:
+    """Add the maps of work-rates of beams, of which nothing is mapped so far."""
+    empty = no_maps(len(outputs["work_rate"]), max(1, len(settings.duty)))
+    gap = np.full(empty.gap.shape, np.nan)
+    for name, values in zip(_MAPS, (gap, empty.work, empty.error), strict=True):
+        outputs[name] = values
+
+
+def follow(
+    outputs: dict[str, NDArray[Any]],
+    status: NDArray[np.int8],
+    p: Rows,
+    seed: NDArray[np.uint64],
+    settings: Settings,
+    followed: NDArray[np.bool_],
+    refused: dict[int, str],
+    maps: WorkMaps | None = None,
+) -> None:
+    """Find the lives of some rods, and set their outputs and status; refuse others."""
+    rows = np.flatnonzero(followed & ~np.isin(np.arange(len(seed)), list(refused)))
     if len(rows):
         q: Rows = Params._make(field[rows] for field in p)
         shares = np.where(q.random_force_level > 0, seed[rows], np.uint64(0))
-        lives = find_shared_lives(q, settings, shares)
+        kept = None if maps is None else WorkMaps._make(field[rows] for field in maps)
+        lives = find_shared_lives(q, settings, shares, kept, maps is None)
         status[rows] = _note(outputs, rows, q, lives, settings)
     for i in refused:
         status[i] = Status.NON_FINITE
@@ -75,17 +104,17 @@ def batch(x: Array, seed: NDArray[np.uint64], settings: Settings) -> _Batch:
                 values[i] = np.nan
             elif values.dtype == np.int8:
                 values[i] = -1
-    return (outputs, status, refused) if refused else (outputs, status)
 
 
-def _refused(p: Rows, settings: Settings) -> dict[int, str]:
+def refused_rows(p: Rows, settings: Settings) -> dict[int, str]:
+    """Return the rods that cannot be computed, with the reason."""
     offsets = [value for state in settings.duty for key, value in state if key == "gap_offset"]
     opens = bool(settings.gap_history) or any(float(offset) > 0 for offset in offsets)
     is_preloaded = (p.preload_deflection > 0) & (p.creep_down == 0) & (p.relaxed_share == 1)
     return dict.fromkeys(np.flatnonzero(is_preloaded & (not opens)).tolist(), _NO_OPENING)
 
 
-def _add_openings(outputs: dict[str, NDArray[Any]]) -> None:
+def add_openings(outputs: dict[str, NDArray[Any]]) -> None:
     """Add the times to opening of beams: their gaps are open."""
     sites = outputs["time_to_depth"][:, :, 0]
     opened = np.where(np.isnan(sites), np.nan, 0.0)
@@ -93,7 +122,7 @@ def _add_openings(outputs: dict[str, NDArray[Any]]) -> None:
     outputs["time_to_opening_censored"] = np.zeros(sites.shape, bool)
 
 
-def _add_gaps(outputs: dict[str, NDArray[Any]], p: Rows, settings: Settings) -> None:
+def add_gaps(outputs: dict[str, NDArray[Any]], p: Rows, settings: Settings) -> None:
     """Add the gaps at the instants, and the shares of their growth by wear, from worn depths.
 
     Both are NaN once the scar has the last of the depths.
@@ -172,9 +201,13 @@ def _note(
         outputs["worn_depth"][rows] = worn
         outputs["largest_worn_depth"][rows] = worn.max(axis=1)
         part = {"worn_depth": worn}
-        _add_gaps(part, p, settings)
+        add_gaps(part, p, settings)
         for name in ("gap", "wear_share"):
             outputs[name][rows] = part[name]
+    if settings.map_growth > 0:
+        gap = np.where(np.isfinite(lives.map_gap), lives.map_gap, np.nan)
+        for name, values in zip(_MAPS, (gap, lives.map_work, lives.map_error), strict=True):
+            outputs[name][rows] = values
     status = np.where(lives.lost | lives.unfinished, Status.OUT_OF_BUDGET, Status.OK)
     return status.astype(np.int8)
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.parameters import FACTORS
+from models.beam.service.work_maps import mapped_work
 from models.numerics import duty as duty_states
 from models.numerics.duty import OFFSET, TIME, WEAR, end_of_state, offset_of_state
 from models.numerics.gap_drift import drift, drift_clock, drift_falls, drift_passes, next_kink
@@ -56,6 +57,11 @@ class Rod(NamedTuple):
         Of the missing response: its time, then the gaps of each state, NaN where it is not asked.
     largest : ndarray, shape (1,)
         Largest work-rate read so far.
+    map_gap : ndarray, shape (s, 2)
+        Least gaps that are mapped; inf for a state whose work-rates are not.
+    map_growth : float
+        Growth of each gap up to which they are.
+    map_terms : ndarray, shape (s, 2, TERMS)
     """
 
     gap: NDArray[np.float64]
@@ -79,6 +85,9 @@ class Rod(NamedTuple):
     cursor: NDArray[np.int64]
     at: NDArray[np.float64]
     largest: NDArray[np.float64]
+    map_gap: NDArray[np.float64]
+    map_growth: float
+    map_terms: NDArray[np.float64]
 
 
 @kernel
@@ -117,6 +126,22 @@ def _runs_now(s, state, p):
 
 
 @kernel
+def _is_mapped(right, left, s, p):
+    low, high = p.map_gap[s], p.map_growth
+    return 0 <= right - low[0] <= high and 0 <= left - low[1] <= high
+
+
+@kernel
+def _asks(right, left, s, state, p):
+    """Return whether a state of duty asks for a response at its gaps."""
+    return (
+        _runs_now(s, state, p)
+        and _may_wear(right, left, s, p)
+        and not _is_mapped(right, left, s, p)
+    )
+
+
+@kernel
 def _wear(k, work, t, depth, volume, p):
     return wear_rate(k * work, work, t, depth, volume, p.laws, p.oxide, p.oxide_factor)
 
@@ -128,29 +153,27 @@ def _rates(v, x, t, state, p, rate, noise):
     is_asked = False
     for s in range(len(p.duty)):
         shift = p.duty[s, OFFSET] - base
-        is_asked |= _runs_now(s, state, p) and _may_wear(x[0] + shift, x[1] + shift, s, p)
-    if not is_asked:
-        return
+        is_asked |= _asks(x[0] + shift, x[1] + shift, s, state, p)
     used = p.cursor[USED]
-    if used == p.cursor[AVAILABLE]:
+    if is_asked and used == p.cursor[AVAILABLE]:
         rate[0] = rate[1] = np.nan
         if p.cursor[IS_MISSING] == 0:
             p.cursor[IS_MISSING] = 1
             p.at[0] = t
             for s in range(len(p.duty)):
                 shift = p.duty[s, OFFSET] - base
-                may_wear = _may_wear(x[0] + shift, x[1] + shift, s, p)
+                asks = _asks(x[0] + shift, x[1] + shift, s, state, p)
                 for i in range(2):
-                    p.at[1 + 2 * s + i] = np.nan
-                    if _runs_now(s, state, p) and may_wear:
-                        p.at[1 + 2 * s + i] = x[i] + shift
+                    p.at[1 + 2 * s + i] = x[i] + shift if asks else np.nan
         return
-    p.cursor[USED] += 1
+    if is_asked:
+        p.cursor[USED] += 1
     for s in range(len(p.duty)):
         shift = p.duty[s, OFFSET] - base
         if not (_runs_now(s, state, p) and _may_wear(x[0] + shift, x[1] + shift, s, p)):
             continue
-        if _is_extinct(x[0] + shift, x[1] + shift, used, s, p):
+        is_mapped = _is_mapped(x[0] + shift, x[1] + shift, s, p)
+        if not is_mapped and _is_extinct(x[0] + shift, x[1] + shift, used, s, p):
             continue
         share = 1.0 if p.in_sequence else p.duty[s, TIME]
         for i in range(2):
@@ -158,7 +181,13 @@ def _rates(v, x, t, state, p, rate, noise):
                 continue
             volume = v[i] / (1 + p.kappa)
             depth = _worn_depth(v, i, p) / (1 + p.kappa)  # Eq. (5)
-            work, doubt = p.work[used, s, i], p.noise[used, s, i]
+            work, doubt = 0.0, 0.0
+            if is_mapped:
+                right = (x[0] + shift - p.map_gap[s, 0]) / p.map_growth
+                left = (x[1] + shift - p.map_gap[s, 1]) / p.map_growth
+                work = mapped_work(right, left, p.map_terms[s, i])
+            else:
+                work, doubt = p.work[used, s, i], p.noise[used, s, i]
             k = p.coefficient[i] * p.duty[s, WEAR]
             worn = _wear(k, work, t, depth, volume, p)
             more = _wear(k, work + doubt, t, depth, volume, p)
@@ -240,7 +269,8 @@ _STEPS = 100_000
 @kernel
 def integrate_rod(
     gap, coefficient, numbers, depths, growths, c, history, laws, duty, in_sequence, reach, work,
-    noise, cursor, at, floor, length, end, fate, times, errors, instants, volume,
+    noise, cursor, at, map_gap, map_growth, map_terms, floor, length, end, fate, times,
+    errors, instants, volume,
 ):  # fmt: skip
     """Integrate one row as far as its responses go.
 
@@ -248,6 +278,8 @@ def integrate_rod(
     ----------
     gap, coefficient, depths, growths, c, history, laws, duty, in_sequence, reach, work, noise, at
         As in `Rod`; c is its drift.
+    map_gap, map_growth, map_terms
+        As in `Rod`.
     numbers : ndarray, shape (6,)
         kappa, B, p, tilt, delta_ox, psi_ox.
     cursor : ndarray of int, shape (3,)
@@ -268,7 +300,7 @@ def integrate_rod(
     p = Rod(
         gap, coefficient, numbers[0], numbers[1], numbers[2], numbers[3], depths, growths, c,
         history, laws, numbers[4], numbers[5], duty, in_sequence, reach, work, noise, cursor, at,
-        np.zeros(1),
+        np.zeros(1), map_gap, map_growth, map_terms,
     )  # fmt: skip
     cursor[USED], cursor[IS_MISSING] = 0, 0
     v = np.zeros(2)

@@ -14,7 +14,7 @@ from models.beam.response.averages import NINE_IN_TEN
 from models.beam.response.settling import settle
 from models.beam.service.growth import FORCE, FREQUENCY, RANDOM_LEVEL
 from models.beam.start import PROPAGATORS, initial_state
-from models.beam.structure.modal import Array, beams
+from models.beam.structure.modal import Array, beams, free_reach
 from models.beam.structure.propagation import FIRST_MODE, Propagator, System
 from models.beam.units import watt
 
@@ -40,6 +40,21 @@ class _Group(NamedTuple):
     params: Rows
 
 
+def _in_state(p: Rows, factors: Array) -> Rows:
+    """Return the parameters of n beams in a state of duty."""
+    return p._replace(
+        force_amplitude=p.force_amplitude * factors[FORCE],
+        forcing_frequency=p.forcing_frequency * factors[FREQUENCY],
+        random_force_level=p.random_force_level * factors[RANDOM_LEVEL],
+    )
+
+
+def reach_of(p: Rows, duty: Array, settings: Settings, seed: NDArray[np.uint64]) -> Array:
+    """Return a bound of the tips' displacements without contact [m], shape (n, s)."""
+    reaches = [free_reach(beams(_in_state(p, factors), settings, seed)) for factors in duty]
+    return np.stack(reaches, axis=1) * p.initial_gap[:, None]
+
+
 class Responses:
     """Responses of n rods.
 
@@ -59,11 +74,7 @@ class Responses:
         self.reach = np.zeros((len(seed), len(duty)))
         self._watt = np.empty_like(self.reach)
         for s, factors in enumerate(duty):
-            q: Rows = p._replace(
-                force_amplitude=p.force_amplitude * factors[FORCE],
-                forcing_frequency=p.forcing_frequency * factors[FREQUENCY],
-                random_force_level=p.random_force_level * factors[RANDOM_LEVEL],
-            )
+            q = _in_state(p, factors)
             groups = []
             for rows, system in self._propagator.groups(beams(q, settings, seed), settings):
                 part: Rows = Params._make(field[rows] for field in q)
@@ -131,6 +142,12 @@ class Responses:
         earlier = [response for response in kept if response.time < time]
         chosen = earlier or kept
         return chosen[-1] if chosen else None
+
+    def forget(self, rows: NDArray[np.intp]) -> None:
+        """Forget the responses of some rods, as if none had been settled."""
+        for row in rows.tolist():
+            for settled in self._settled[row]:
+                settled.clear()
 
     def regime_changes(self, row: int) -> int:
         """Return how often the regime of a rod has changed, in all states of duty."""

@@ -12,13 +12,20 @@ from numpy.typing import NDArray
 from models.beam.parameters import Params, Rows, Settings
 from models.beam.processes import has_clock, scar_scales
 from models.beam.service.lives import LONGEST, ServiceLives, find_service_lives
+from models.beam.service.work_maps import WorkMaps
 from models.beam.structure.modal import Array
 
 _REFERENCE = Params()
 _OF_CLOCKS = ("creep_time", "relaxed_share", "relaxation_time", "swelling_start")
 
 
-def find_shared_lives(p: Rows, settings: Settings, seed: NDArray[np.uint64]) -> ServiceLives:
+def find_shared_lives(
+    p: Rows,
+    settings: Settings,
+    seed: NDArray[np.uint64],
+    maps: WorkMaps | None = None,
+    follows: bool = True,
+) -> ServiceLives:
     """Find the lives of n rods.
 
     Parameters
@@ -29,17 +36,22 @@ def find_shared_lives(p: Rows, settings: Settings, seed: NDArray[np.uint64]) -> 
         A sequence of duty states that repeats often in a life counts as mixed.
     seed : ndarray of uint64, shape (n,)
         Of the random force.
+    maps : WorkMaps, optional
+        From an earlier computation.
+    follows : bool
+        Whether the beams are followed where nothing is mapped.
 
     Returns
     -------
     ServiceLives
     """
     if not settings.duty or settings.order == "mixed":
-        return _find(p, settings, seed)
+        return _find(p, settings, seed, maps, follows)
     cycle = sum(
         float(value) for state in settings.duty for key, value in state if key == "duration"
     )
-    lives = _find(p, replace(settings, duty=_shares(settings, cycle), order="mixed"), seed)
+    mixed = replace(settings, duty=_shares(settings, cycle), order="mixed")
+    lives = _find(p, mixed, seed, maps, follows)
     # Mixed, a depth is reached at most a cycle too early or too late.
     passed = lives.reached & (lives.time > 0)
     lives.error[passed] += cycle
@@ -47,7 +59,9 @@ def find_shared_lives(p: Rows, settings: Settings, seed: NDArray[np.uint64]) -> 
     few = np.flatnonzero(cycle > settings.accuracy * events.min(axis=1))
     if len(few):
         rods: Rows = Params._make(field[few] for field in p)
-        for values, part in zip(lives, _find(rods, settings, seed[few]), strict=True):
+        kept = WorkMaps._make(field[few] for field in lives.maps)
+        again = _find(rods, settings, seed[few], kept, follows)
+        for values, part in zip(lives, again, strict=True):
             values[few] = part
     return lives
 
@@ -63,7 +77,9 @@ def _shares(settings: Settings, cycle: float) -> tuple[tuple[tuple[str, str | fl
     )
 
 
-def _find(p: Rows, settings: Settings, seed: NDArray[np.uint64]) -> ServiceLives:
+def _find(
+    p: Rows, settings: Settings, seed: NDArray[np.uint64], maps: WorkMaps | None, follows: bool
+) -> ServiceLives:
     """Find the lives of n rods; those of one reference rod once."""
     rods, unit = _reference_rods(p, settings)
     end = np.minimum(settings.horizon, LONGEST) * np.ones(len(seed))
@@ -73,7 +89,10 @@ def _find(p: Rows, settings: Settings, seed: NDArray[np.uint64]) -> ServiceLives
     columns = np.column_stack([*rods, halves.astype(float), clock])
     _, first, back = np.unique(columns, axis=0, return_index=True, return_inverse=True)
     distinct: Rows = Params._make(field[first] for field in rods)
-    lives = find_service_lives(distinct, settings, seed[first], end[first], clock[first])
+    kept = None if maps is None else WorkMaps._make(field[first] for field in maps)
+    lives = find_service_lives(
+        distinct, settings, seed[first], end[first], clock[first], kept, follows
+    )
     return _in_time(lives.take(back.reshape(-1)), unit, settings.horizon)
 
 

@@ -277,16 +277,20 @@ def what_if(
         typer.Option(
             "--set",
             metavar="uncertain.NAME.KEY=VALUE",
-            help="May be repeated.",
+            help="May be repeated. Settings and fixed inputs: settings.NAME, fixed.NAME.",
             autocompletion=completion.complete_change,
         ),
     ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="NEW.nc", help="Keep rows computed again."),
+    ] = None,
     json: given.Json = False,
 ) -> None:
-    """Show what other laws of the inputs would change."""
+    """Show what other laws of inputs or settings would change."""
     from uq.cli import what_if as question
 
-    question.what_if(result, set_, json)
+    question.what_if(result, set_, output, json)
 
 
 def twin(

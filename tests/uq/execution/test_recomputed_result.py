@@ -1,0 +1,92 @@
+"""A result computed again from what its rows keep is the result of a run, to the bit."""
+
+import numpy as np
+import pytest
+
+import uq as api
+from uq.errors import InputError
+
+RODS = """
+[study]
+name = "rods"
+model = "beam"
+
+[design]
+method = "monte-carlo"
+samples = 3
+seed = 1
+
+[uncertain.initial_gap]
+distribution = "normal"
+mean = 2.5e-4
+sd = 1e-5
+
+[uncertain.wear_coefficient]
+distribution = "lognormal"
+median = 1e-14
+sigma = 0.5
+
+[fixed]
+force_amplitude = 0.0
+random_force_level = 0.05
+mass_damping = 8.0
+
+[settings]
+depths = [2e-5]
+accuracy = 0.05
+map_growth = 5e-5
+
+[analysis]
+outputs = ["first_time_to_depth"]
+"""
+
+
+@pytest.fixture(scope="module")
+def rods(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("rods")
+    (folder / "rods.toml").write_text(RODS)
+    api.run(folder / "rods.toml", folder / "rods.nc", workers=0)
+    return folder / "rods.nc"
+
+
+def test_changed_settings_and_inputs_give_what_a_run_would(rods):
+    changes = {"study.name": "flat", "settings.scar": "flat-bar", "fixed.creep_down": 1e-5}
+    again = api.recompute(rods, changes)
+    study = api.load_study(rods.with_suffix(".toml")).with_changes(changes)
+    run = api.run(study, rods.with_name("flat.nc"), workers=0)
+    for name, variable in run.variables.items():
+        np.testing.assert_array_equal(again[name].values, variable.values, err_msg=str(name))
+    assert again.attrs["study_identity"] == run.attrs["study_identity"]
+    lives = api.summary(again), api.summary(run)
+    assert lives[0].equals(lives[1])
+
+
+def test_a_what_if_on_settings_prints_both_and_keeps_the_new_result(rods, uq, monkeypatch):
+    monkeypatch.chdir(rods.parent)
+    ended = uq("what-if", "rods.nc", "--set", "settings.scar='dimple'", "-o", "dimple.nc")
+    assert ended.code == 0, ended.err
+    assert "computed again" in ended.out and "first_time_to_depth" in ended.out
+    compared = uq("compare", "rods.nc", "dimple.nc")
+    assert compared.code == 0 and "B  dimple.nc  dimple (3 rows)" in compared.out
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"fixed.contact_stiffness": 2e4}, "contact_stiffness moves the beam"),
+        ({"settings.elements": 12}, "elements moves the beam"),
+        ({"settings.scar": "flat"}, "scar"),
+        ({"fixed.creep": 1e-5}, "creep"),
+    ],
+)
+def test_changes_beyond_what_is_kept_are_refused_in_one_line(rods, changes, words):
+    with pytest.raises(InputError) as caught:
+        api.recompute(rods, changes)
+    assert len(caught.value.lines) == 1 and words in caught.value.lines[0]
+
+
+def test_a_model_that_keeps_nothing_says_so(tmp_path):
+    study = api.load_study("studies/exponential-wear.toml").with_samples(16)
+    ds = api.run(study, tmp_path / "wear.nc", workers=0)
+    with pytest.raises(InputError, match="keep nothing"):
+        api.recompute(ds, {"settings.a": 1})
