@@ -50,6 +50,7 @@ def test_everything_promised_is_there():
             "running_estimates",
             "enough",
             "compare",
+            "recompute",
             "plots",
             "InputError",
             "RunError",
