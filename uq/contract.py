@@ -319,6 +319,10 @@ Again = Callable[
 ValueError, in one line, where an input or a setting differs that it cannot change."""
 
 
+def _no_refusal(settings: Any, constants: Mapping[str, float]) -> str:
+    return ""
+
+
 def _no_coordinates(settings: Any) -> Mapping[str, Sequence[Any]]:
     return {}
 
@@ -351,6 +355,9 @@ class Model:
     coordinates : callable
         ``coordinates(settings) -> {dimension: values}`` for every dimension of the outputs. If a
         dimension is empty, ``batch`` returns no outputs along it.
+    refusal : callable
+        ``refusal(settings, constants)`` -> the reason why no row of a study with these settings and
+        values of parameters that do not vary can be computed; "" if there is none.
     dimensions : dict of str to tuple
         Dimension -> (unit, meaning), for coordinates that are quantities.
     cheap : dict of str to Batch
@@ -384,6 +391,7 @@ class Model:
     batch: Batch
     simulate: Callable[..., Trajectory] | None = None
     coordinates: Callable[[Any], Mapping[str, Sequence[Any]]] = field(default=_no_coordinates)
+    refusal: Callable[[Any, Mapping[str, float]], str] = _no_refusal
     dimensions: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     cheap: Mapping[str, Batch] = field(default_factory=dict)
     random: bool = False

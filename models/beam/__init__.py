@@ -28,6 +28,7 @@ from typing import Any
 
 from models.beam.outputs import OUTPUTS, coordinates
 from models.beam.parameters import Params, Settings
+from models.beam.processes import refusal
 from models.beam.uncertain import UNCERTAIN
 from uq.contract import Kept, Model, Trajectory
 
@@ -60,6 +61,7 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
+    refusal=refusal,
     dimensions={
         "depth": ("m", "depth of the rod's scar"),
         "instant": ("s", "time since wear began"),

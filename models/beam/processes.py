@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from models.beam.parameters import Settings
+from models.beam.parameters import Params, Settings
 
 _CLOCKS = ("creep_down", "preload_deflection", "swelling_rate")
 """Parameters that are above 0 where a gap moves by itself."""
@@ -41,6 +41,28 @@ def has_clock(p: Any, settings: Settings) -> Any:
 def _has_clock(settings: Settings) -> bool:
     in_sequence = bool(settings.duty) and settings.order == "sequence"
     return bool(settings.gap_history) or settings.wear_law == "edf" or in_sequence
+
+
+NO_OPENING = (
+    "preload_deflection > 0 and nothing opens the gaps: set creep_down, or relaxed_share below 1"
+)
+
+
+def never_opens(p: Any, settings: Settings) -> Any:
+    """Return whether gaps are preloaded and nothing can open them; of n beams a mask."""
+    offsets = [value for state in settings.duty for key, value in state if key == "gap_offset"]
+    opens = bool(settings.gap_history) or any(float(offset) > 0 for offset in offsets)
+    is_preloaded = (p.preload_deflection > 0) & (p.creep_down == 0) & (p.relaxed_share == 1)
+    return is_preloaded & (not opens)
+
+
+def refusal(settings: Settings, constants: Mapping[str, float]) -> str:
+    """Return why no row of a study can be computed; "" if some may be."""
+    needed = ("preload_deflection", "creep_down", "relaxed_share")
+    if any(name not in constants for name in needed):
+        return ""
+    fixed = Params(**{name: constants[name] for name in needed})
+    return NO_OPENING if never_opens(fixed, settings) else ""
 
 
 def scar_scales(settings: Settings) -> Mapping[str, float]:

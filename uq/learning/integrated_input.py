@@ -116,7 +116,7 @@ def scale_of(
     ]
     free = [name for name in candidates if not others[name]]
     if not free:
-        return None, tuple(why)
+        return None, (*why, *_scaling_elsewhere(rows, inputs, exponents, common))
     first = next(iter(exponents.values()))
 
     def spread(name: str) -> float:
@@ -126,6 +126,24 @@ def scale_of(
     best_exponents = {name: by_input[best] for name, by_input in exponents.items()}
     scale = IntegratedScale(best, levels[best], best_exponents, inputs.values[best], inputs)
     return scale, tuple(why)
+
+
+def _scaling_elsewhere(
+    rows: Result, inputs: Inputs, exponents: Mapping[str, Mapping[str, float]], common: set[str]
+) -> Iterator[str]:
+    """Yield sentences on inputs that scale other lives of the result, but not the inspected ones.
+
+    A process with a clock of its own, such as creep, ends the scaling of the lives that it changes.
+    """
+    if not exponents or common:
+        return
+    scaling = {name for output in rows.outputs.values() for name in free_scales(inputs, output)}
+    for name in inputs.laws:
+        if name in scaling:
+            yield (
+                f"{name} is not integrated: under the processes of this study, the inspected lives"
+                " do not only scale with it."
+            )
 
 
 def shared_inputs(rows: Result, scale: IntegratedScale | None) -> list[str]:

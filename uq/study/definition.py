@@ -279,6 +279,8 @@ def study_from_text(
     constants = study_model.nominal | dict(file.fixed)
     for name in entries:
         constants.pop(name, None)
+    if why := study_model.refusal(settings, constants):
+        raise InputError(f"{source}: {why}")
     study_model = study_model.given(settings, constants)
     file = file.in_units({name: output.unit for name, output in study_model.outputs.items()})
     outputs = file.analysis.outputs or tuple(study_model.outputs)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from models.beam import batch as of_the_beam
 from models.beam.parameters import Params, Rows, Settings
-from models.beam.processes import has_processes
+from models.beam.processes import NO_OPENING, has_processes, never_opens
 from models.beam.service.lives import (
     ServiceLives,
     drift_of,
@@ -28,10 +28,6 @@ _Beams = tuple[dict[str, NDArray[Any]], NDArray[np.int8]]
 _Batch = _Beams | tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]
 
 _MAPS = ("mapped_gap", "mapped_work_rate", "mapped_work_rate_error")
-
-_NO_OPENING = (
-    "preload_deflection > 0 and nothing opens the gaps: set creep_down, or relaxed_share below 1"
-)
 
 
 def batch(x: Array, seed: NDArray[np.uint64], settings: Settings) -> _Batch:
@@ -108,10 +104,7 @@ def follow(
 
 def refused_rows(p: Rows, settings: Settings) -> dict[int, str]:
     """Return the rods that cannot be computed, with the reason."""
-    offsets = [value for state in settings.duty for key, value in state if key == "gap_offset"]
-    opens = bool(settings.gap_history) or any(float(offset) > 0 for offset in offsets)
-    is_preloaded = (p.preload_deflection > 0) & (p.creep_down == 0) & (p.relaxed_share == 1)
-    return dict.fromkeys(np.flatnonzero(is_preloaded & (not opens)).tolist(), _NO_OPENING)
+    return dict.fromkeys(np.flatnonzero(never_opens(p, settings)).tolist(), NO_OPENING)
 
 
 def add_openings(outputs: dict[str, NDArray[Any]]) -> None:

@@ -9,6 +9,7 @@ from service_rods import FIELDS, rows
 from models.beam import MODEL
 from models.beam.batch import batch as by_impact_alone
 from models.beam.parameters import Params, Settings
+from uq import InputError, load_study
 from uq.contract import Status
 
 QUICK = {"depths": (2e-5, 4e-5), "accuracy": 0.05}
@@ -177,6 +178,20 @@ def test_a_preload_that_nothing_opens_is_refused_with_a_reason():
     assert list(reasons) == [0] and "preload_deflection" in reasons[0]
     assert np.isnan(outputs["first_time_to_depth"][0]).all()
     assert np.isfinite(outputs["first_time_to_depth"][1]).all()
+
+
+def test_a_study_whose_preload_nothing_opens_is_refused_before_it_runs():
+    preloaded = MODEL.nominal | {"preload_deflection": 1e-5}
+    assert "creep_down" in MODEL.refusal(Settings(), preloaded)
+    assert MODEL.refusal(Settings(), MODEL.nominal) == ""
+    assert MODEL.refusal(Settings(), preloaded | {"creep_down": 2e-5}) == ""
+    history = Settings(gap_history=((0.0, 0.0), (1e6, 2e-5)))
+    assert MODEL.refusal(history, preloaded) == ""
+    varied = {name: value for name, value in preloaded.items() if name != "creep_down"}
+    assert MODEL.refusal(Settings(), varied) == ""
+    study = load_study("studies/beam-lifetime.toml")
+    with pytest.raises(InputError, match="nothing opens the gaps"):
+        study.with_changes({"fixed.preload_deflection": 1e-5})
 
 
 def test_an_oxide_and_a_law_of_wear_change_the_rate():
