@@ -25,6 +25,7 @@ Reading order; a module imports only those above it:
     dop853          the same over any time, through guarded modes
     slow_step       a step of quantities that wear, by Heun's method
     slow_time       the same over any time, with duty states, gaps that open or close, and events
+    keys            refusal of keys that a table cannot have
     scars           volumes of wear scars by their depths, and the inverse
     gap_drift       growth of a gap by itself: creep, relaxation, swelling, a history
     wear_laws       rates of wear by work-rate, time, depth and volume

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics.jit import kernel
+from models.numerics.keys import no_such_key
 
 ORDERS = ("mixed", "sequence")
 
@@ -72,9 +73,9 @@ def duty_numbers(
         row.append(_number(name, given, "gap_offset", (-_OFFSET, _OFFSET), 0.0))
         row += [_number(name, given, factor, (0.0, _LARGEST), 1.0) for factor in factors]
         if given:
-            allowed = ", ".join(["name", time, "wear", "gap_offset", *factors])
-            problem = f"duty state '{name}' has no {min(given)!r} in order '{order}'"
-            raise ValueError(f"{problem}; it takes {allowed}")
+            allowed = ["name", time, "wear", "gap_offset", *factors]
+            owner = f"duty state '{name}', in order '{order}',"
+            raise ValueError(no_such_key(owner, min(given), allowed))
         rows.append(row)
     numbers = np.array(rows)
     total = float(numbers[:, TIME].sum())

@@ -205,7 +205,7 @@ SHARE = table(share=0.5)
     [
         ({"duty": (table(share=0.7), table(share=0.4))}, "sum to 1.1, more than 1"),
         ({"duty": (table(name="a", duration=1.0),)}, "state 'a' needs share, a number within 0.0"),
-        ({"duty": (table(name="a", share=0.5, x=1.0),)}, "state 'a' has no 'x' in order 'mixed'"),
+        ({"duty": (table(name="a", share=0.5, x=1.0),)}, "state 'a', in order 'mixed', has no 'x'"),
         ({"duty": (table(duration=0.0),), "order": "sequence"}, "must be positive"),
         ({"duty": (table(share=0.5),), "order": "sequence"}, "state '1' needs duration"),
         ({"gap_history": ((0.0, 0.0), (2.0, 1e-5), (1.0, 2e-5))}, "1 s follows 2 s"),

@@ -6,12 +6,14 @@ each site's work-rate is a polynomial of both gaps of total degree `DEGREE`, fit
 least squares to time means at `MAP_NODES` x `MAP_NODES` pairs of gaps.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from models.beam.outputs import MAP_NODES, MAP_POSITIONS
 from models.beam.structure.modal import Array
+from models.numerics.elementary import log
 from models.numerics.jit import kernel
 
 DEGREE = 4
@@ -78,7 +80,7 @@ def mapped_work(right, left, terms):
             below, here = here, 2 * v * here - below
         logarithm += now * part
         before, now = now, 2 * u * now - before
-    return np.exp(logarithm)
+    return math.exp(logarithm)
 
 
 def _basis() -> Array:
@@ -114,13 +116,49 @@ def fit_maps(maps: WorkMaps) -> FittedMaps:
     return FittedMaps(gap, terms, spread)
 
 
+@kernel
+def _least_squares(basis, weight, values, terms, spread):
+    """Set the weighted fit of values by m columns, and its independent standard errors.
+
+    By modified Gram-Schmidt orthogonalisation Q R: spread[j] is column j of the inverse of R.
+    Returns the weighted sum of squared deviations.
+    """
+    points, m = basis.shape
+    q, r = np.empty((m, points)), np.zeros((m, m))
+    left = weight * values
+    for j in range(m):
+        q[j] = weight * basis[:, j]
+        for i in range(j):
+            for k in range(points):
+                r[i, j] += q[i, k] * q[j, k]
+            q[j] -= r[i, j] * q[i]
+        for k in range(points):
+            r[j, j] += q[j, k] * q[j, k]
+        r[j, j] = math.sqrt(r[j, j])
+        q[j] /= r[j, j]
+        terms[j] = 0.0
+        for k in range(points):
+            terms[j] += q[j, k] * left[k]
+        left -= terms[j] * q[j]
+    spread[:] = 0.0
+    for j in range(m - 1, -1, -1):
+        for i in range(j + 1, m):
+            terms[j] -= r[j, i] * terms[i]
+        terms[j] /= r[j, j]
+        spread[j, j] = 1 / r[j, j]
+        for i in range(j - 1, -1, -1):
+            for k in range(i + 1, j + 1):
+                spread[j, i] -= r[i, k] * spread[j, k]
+            spread[j, i] /= r[i, i]
+    total = 0.0
+    for k in range(points):
+        total += left[k] * left[k]
+    return total
+
+
 def _fit(work: Array, doubt: Array) -> tuple[Array, Array]:
     """Return the polynomial of one site, shape (TERMS,), and its errors, shape (TERMS, TERMS)."""
-    weight = work / doubt
-    logarithm = np.log(work)
-    orthogonal, triangle = np.linalg.qr(_BASIS * weight[:, None])
-    inverse = np.linalg.inv(triangle)
-    terms = inverse @ (orthogonal.T @ (logarithm * weight))
-    deviations = (logarithm - _BASIS @ terms) * weight
-    scatter = max(1.0, float(deviations @ deviations) / (len(work) - TERMS))
-    return terms, np.sqrt(scatter) * inverse.T
+    terms, spread = np.empty(TERMS), np.empty((TERMS, TERMS))
+    deviations = _least_squares(_BASIS, work / doubt, log(work), terms, spread)
+    scatter = max(1.0, deviations / (len(work) - TERMS))
+    return terms, math.sqrt(scatter) * spread

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.keys import no_such_key
 from models.numerics.wear_laws.edf import EDF
 from models.numerics.wear_laws.law import MOST, WearLaw
 from models.numerics.wear_laws.power import POWER
@@ -43,8 +44,8 @@ def law_numbers(name: str, pairs: Sequence[tuple[str, str | float]]) -> NDArray[
     given = dict(pairs)
     unknown = sorted(given.keys() - {argument.name for argument in arguments})
     if unknown:
-        allowed = ", ".join(argument.name for argument in arguments) or "no numbers"
-        raise ValueError(f"wear law '{name}' has no {unknown[0]!r}; it takes {allowed}")
+        allowed = [argument.name for argument in arguments]
+        raise ValueError(no_such_key(f"wear law '{name}'", unknown[0], allowed))
     numbers = np.zeros((int(name in places), 1 + MOST))
     for row in numbers:
         row[0] = places[name]

@@ -5,6 +5,9 @@ import pytest
 
 import uq as api
 from uq.errors import InputError
+from uq.learning.integrated_input import scale_of
+from uq.learning.observables import observables_of
+from uq.result.result import Result
 
 RODS = """
 [study]
@@ -90,3 +93,13 @@ def test_a_model_that_keeps_nothing_says_so(tmp_path):
     ds = api.run(study, tmp_path / "wear.nc", workers=0)
     with pytest.raises(InputError, match="keep nothing"):
         api.recompute(ds, {"settings.a": 1})
+
+
+def test_with_creep_the_wear_coefficient_is_not_integrated_and_the_reason_is_given(rods):
+    plain = Result.open(rods)
+    creeping = Result(api.recompute(rods, {"fixed.creep_down": 1e-5}))
+    name = "first_time_to_depth[depth=2e-05]"
+    scale, _ = scale_of(plain, [observables_of(plain)[name]])
+    none, why = scale_of(creeping, [observables_of(creeping)[name]])
+    assert scale.name == "wear_coefficient" and none is None
+    assert len(why) == 1 and why[0].startswith("wear_coefficient is not integrated")
