@@ -1,7 +1,7 @@
 """From rows of parameters to outputs, with processes beside wear by impact."""
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,19 +9,12 @@ from numpy.typing import NDArray
 from models.beam import batch as of_the_beam
 from models.beam.parameters import Params, Rows, Settings
 from models.beam.processes import has_processes
-from models.beam.service.lives import (
-    ServiceLives,
-    drift_of,
-    find_service_lives,
-    gaps_when_new,
-    scars_of,
-)
 from models.beam.start import wear_shares
 from models.beam.structure.modal import Array
-from models.numerics.duty import history_numbers
-from models.numerics.gap_drift import drift
-from models.numerics.scars import scar_volume
 from uq.contract import Status
+
+if TYPE_CHECKING:
+    from models.beam.service.lives import ServiceLives
 
 _Beams = tuple[dict[str, NDArray[Any]], NDArray[np.int8]]
 _Batch = _Beams | tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]
@@ -62,6 +55,8 @@ def batch(x: Array, seed: NDArray[np.uint64], settings: Settings) -> _Batch:
     followed = slow & (status != Status.NON_FINITE) & ~np.isnan(outputs["work_rate_heavy"])
     rows = np.flatnonzero(followed & ~np.isin(np.arange(len(x)), list(refused)))
     if len(rows):
+        from models.beam.service.lives import find_service_lives  # late: its kernels are many
+
         q: Rows = Params._make(field[rows] for field in p)
         shares = np.where(q.random_force_level > 0, seed[rows], np.uint64(0))
         lives = find_service_lives(q, settings, shares)
@@ -109,7 +104,7 @@ def _note(
     outputs: dict[str, NDArray[Any]],
     rows: NDArray[np.intp],
     p: Rows,
-    lives: ServiceLives,
+    lives: "ServiceLives",
     settings: Settings,
 ) -> NDArray[np.int8]:
     """Set the outputs of some rows that depend on their lives; return their status."""
@@ -162,6 +157,9 @@ def linear_lives(work_rate: Array, p: Rows, settings: Settings) -> Array:
 
     T = (1 + kappa)^(p - 1) B d^p/(k U).
     """
+    from models.beam.service.lives import scars_of
+    from models.numerics.scars import scar_volume
+
     shares = wear_shares(p)
     fastest = (work_rate * shares).max(axis=1) * p.wear_coefficient
     shape = scars_of(p, settings)
@@ -177,13 +175,17 @@ def linear_lives(work_rate: Array, p: Rows, settings: Settings) -> Array:
 
 def _gap_ratio(
     p: Rows,
-    lives: ServiceLives,
+    lives: "ServiceLives",
     life: Array,
     first: NDArray[np.intp],
     whole: NDArray[np.bool_],
     settings: Settings,
 ) -> Array:
     """Return the gap of the less worn site over that of the other at the first time to depth."""
+    from models.beam.service.lives import drift_of, gaps_when_new
+    from models.numerics.duty import history_numbers
+    from models.numerics.gap_drift import drift
+
     history, c = history_numbers(settings.gap_history), drift_of(p)
     begin = gaps_when_new(p)
     ratio = np.full(life.shape, np.nan)
