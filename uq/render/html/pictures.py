@@ -4,7 +4,7 @@ import base64
 import re
 from collections.abc import Container, Iterator, Sequence
 from io import BytesIO, StringIO
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import matplotlib as mpl
@@ -157,7 +157,7 @@ def picture(figure: Figure, caption: str, name: str = "") -> Picture:
     lay_out(figure)
     wide = figure.get_figwidth() > WIDTH
     # Identifiers must be unique within a page.
-    settings = {"svg.fonttype": "none", "svg.hashsalt": name or caption}
+    settings: Any = {"svg.fonttype": "none", "svg.hashsalt": name or caption}
     with mpl.rc_context(settings), ticks_placed_once():
         FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
     svg = _embedded(drawn.getvalue(), caption)
