@@ -54,12 +54,15 @@ def ratio_error(numerators: Array, denominators: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):  # where no batch has one
         ratio = numerators.mean(axis=1, keepdims=True) / mean
         _, error = mean_and_error((numerators - ratio * denominators) / mean)
-    return error * _wider(denominators.shape[1])[np.count_nonzero(denominators, axis=1)]
+    count, informative = denominators.shape[1], np.count_nonzero(denominators, axis=1)
+    if (informative == count).all():
+        return error
+    return error * _wider(count)[informative]
 
 
 def _wider(count: int) -> Array:
     """Return the factors of a standard error for 0, 1, ... or all informative batches."""
-    from scipy.special import stdtrit
+    from scipy.special import stdtrit  # which few rows need
 
     number = np.arange(2, count + 1)
     factors = stdtrit(number - 1, _NINE_IN_TEN) * np.sqrt(number / (number - 1))

@@ -112,7 +112,7 @@ def _roots(file: Path) -> set[Path]:
     if _is_ours(file):
         return {_MODELS / file.relative_to(_MODELS).parts[0]}
     roots = _importable(file)
-    words = frozenset().union(*(_snapshot(root).words for root in roots))
+    words = frozenset().union(*(_words(root) for root in roots))
     named = (part for part in _MODELS.iterdir() if os.fsencode(part.stem) in words)
     return {*roots, *(named if os.fsencode(_MODELS.name) in words else ())}
 
@@ -135,20 +135,25 @@ class _Snapshot(NamedTuple):
     """A source file, or all those in a folder, as this process first saw them."""
 
     digest: bytes
-    words: frozenset[bytes]
+    sources: tuple[bytes, ...]
     stamps: dict[Path, tuple[int, int]]
 
 
 @cache
+def _words(root: Path) -> frozenset[bytes]:
+    return frozenset(re.findall(rb"\w+", b"\n".join(_snapshot(root).sources)))
+
+
+@cache
 def _snapshot(root: Path) -> _Snapshot:
-    whole, words, stamps = hashlib.sha256(), set[bytes](), {}
+    whole, sources, stamps = hashlib.sha256(), [], {}
     for path in filter(Path.is_file, sorted(root.rglob("*.py")) if root.is_dir() else [root]):
         stamps[path] = _stamp(path)
         source = path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
         whole.update(b"%s %d\n" % (os.fsencode(path.relative_to(root.parent)), len(source)))
         whole.update(source)
-        words.update(re.findall(rb"\w+", source))
-    return _Snapshot(whole.digest(), frozenset(words), stamps)
+        sources.append(source)
+    return _Snapshot(whole.digest(), tuple(sources), stamps)
 
 
 def _stamp(path: Path) -> tuple[int, int]:

@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 import numba
 from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import Cache
+from numba.core.runtime import rtsys
 from numba.core.targetconfig import TargetConfig
 
 from models.numerics.cache import folder_of
@@ -63,6 +64,21 @@ def _do_without_cache_on_full_disks() -> None:
 
     patched: Any = Cache
     patched.save_overload = saved
+
+
+def _load_without_compiler(compiled: Any) -> None:
+    """Prevent numba from importing its library of typed functions only to load a kernel.
+
+    The import takes longer than a row. numba repeats it before it compiles, where it is needed.
+    """
+    cache: Any = compiled._cache
+
+    def load(signature: Any, context: Any) -> Any:
+        rtsys.initialize(context)
+        with cache._guard_against_spurious_io_errors():
+            return cache._load_overload(signature, context)
+
+    cache.load_overload = load
 
 
 _name_functions_apart()
@@ -122,12 +138,32 @@ def spliced(function: Function) -> Function:
     return _compiled(function, inline="always")
 
 
+_of_modules: dict[tuple[int, str], tuple[object, Path | None]] = {}
+
+
+def _folder_of(function: Callable[..., Any]) -> Path | None:
+    """Return the folder for compiled code, asked for once for all plain functions of a module.
+
+    A module that is loaded again, as after an edit, has another specification.
+    """
+    spec = function.__globals__.get("__spec__")
+    if spec is None or "." in function.__qualname__:  # the latter may close over others
+        return folder_of(function)
+    key = id(spec), function.__code__.co_filename
+    if key not in _of_modules:
+        _of_modules[key] = spec, folder_of(function)
+    return _of_modules[key][1]
+
+
 def _compiled(function: Function, **more: Any) -> Function:
     more |= {"no_cfunc_wrapper": True}  # nobody calls a kernel from C
     decorate: Any = partial(numba.njit, nogil=True, error_model="numpy", **more)
     typed_in = not Path(inspect.getfile(function)).is_file()  # an edit would go unnoticed
-    folder = None if typed_in else folder_of(function)
+    folder = None if typed_in else _folder_of(function)
     if folder is None:
         return decorate()(function)
     with _cache_folder(folder):
-        return decorate(cache=True)(function)
+        compiled = decorate(cache=True)(function)
+    if hasattr(compiled, "_cache"):  # else kernels are not compiled at all
+        _load_without_compiler(compiled)
+    return compiled

@@ -154,7 +154,10 @@ def _span(columns, basis, part):
         for j in range(k):
             for i in range(width):
                 part[i] = fma(columns[j, i], columns[j, i], part[i])
-        at = part.argmax()
+        at = 0  # numba's argmax would import more than most rows need
+        for i in range(1, width):
+            if part[i] > part[at] or math.isnan(part[i]):
+                at = i
         length = np.sqrt(part[at])
         if r == 0:
             first = length

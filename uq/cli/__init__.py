@@ -92,7 +92,9 @@ def main() -> NoReturn:
     except Exception as error:
         streams.complain(_unforeseen(error))
         code = 1
-    sys.exit(streams.finish(code))
+    code = streams.finish(code)
+    gc.freeze()  # else Python searches all modules for garbage, three times, before it ends
+    sys.exit(code)
 
 
 def say_when_interrupted(sentence: str) -> None:

@@ -10,8 +10,8 @@ from uq.cli.printing import grid, heading, note, number, print_json
 from uq.cli.progress import say, say_plain
 from uq.contract import Model
 from uq.errors import InputError
+from uq.machines.row_by_row import undeclared_lives
 from uq.study.definition import Study
-from uq.study.hints import undeclared_lives
 from uq.text.numbers import quantity
 from uq.text.numbers import threshold as threshold_in_words
 from uq.text.quantities import read_threshold

@@ -14,8 +14,8 @@ from uq.execution.loading import load_model
 from uq.execution.single_row import run_alone
 from uq.files.whole_files import file_behind
 from uq.machines.compilation import compilation
+from uq.machines.row_by_row import undeclared_lives
 from uq.result.one_row import Row
-from uq.study.hints import undeclared_lives
 from uq.text.literals import read_number, read_toml
 from uq.text.numbers import in_brackets
 from uq.text.quantities import read_quantity, read_threshold

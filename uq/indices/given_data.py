@@ -10,14 +10,13 @@ values.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats
 from uq.indices.index import IndexKind, Indices, Null, RefusedError
-from uq.indices.measures import by_slices, even_cuts, has_many_equal
+from uq.indices.measures import even_cuts, has_many_equal, is_undivided, slices_along
 from uq.indices.method import DesignSample
 from uq.stats.estimate import Estimate
 
@@ -175,7 +174,7 @@ def quantile_indices(
     .. [1] J.-C. Fort, T. Klein, N. Rachdi, "New sensitivity analysis subordinated to a contrast",
        Commun. Stat. Theory Methods 45, 4349-4364 (2016).
     """
-    y, indices, notes = sample.values, {}, []
+    y, asked, notes = sample.values, {}, []
     for name, p in sample.quantiles.items():
         rows = max(_ROWS_IN_SLICE, int(np.ceil(_ROWS_BEYOND / min(p, 1 - p))))
         if len(y) < MIN_SLICES * rows:
@@ -183,15 +182,16 @@ def quantile_indices(
                 f"only {len(y)} rows have a value; {name} needs {MIN_SLICES * rows}, {rows} in each"
                 f" of {MIN_SLICES} slices of an input"
             )
-        elif (whole := _least_contrast(y, p)) == 0:
+        elif (whole := _least_contrasts(y, (p,))[0]) == 0:
             notes.append(f"all values on one side of {name} are equal: no input can move it")
         else:
             cuts = even_cuts(len(y), min(len(y) // rows, MOST_SLICES))
-            remains = by_slices(x, cuts, partial(_remains, y, p), rows)
-            indices[IndexKind(name, name)] = 1 - remains / whole
-    if not indices:
+            asked[IndexKind(name, name)] = p, whole, (cuts, rows)
+    if not asked:
         raise RefusedError("; ".join(notes))
-    return indices, tuple(notes)
+    probabilities, contrasts, cases = zip(*asked.values(), strict=True)
+    remains = np.array([_remains(column, y, probabilities, cases) for column in x.T])
+    return dict(zip(asked, 1 - remains.T / np.array(contrasts)[:, None], strict=True)), tuple(notes)
 
 
 def without_optimism(raw: Floats, idle: Floats) -> Floats:
@@ -203,12 +203,33 @@ def without_optimism(raw: Floats, idle: Floats) -> Floats:
     return 1 - (1 - raw) / (1 - idle.mean())
 
 
-def _least_contrast(y: Floats, p: float) -> float:
-    rest = y - np.quantile(y, p, method="inverted_cdf")
-    return float(np.mean(rest * (p - (rest < 0))))
+def _least_contrasts(y: Floats, probabilities: Sequence[float]) -> Floats:
+    quantiles = np.quantile(y, probabilities, method="inverted_cdf")
+    rests = zip((y - quantile for quantile in quantiles), probabilities, strict=True)
+    return np.array([np.mean(rest * (p - (rest < 0))) for rest, p in rests])
 
 
-def _remains(y: Floats, p: float, number: NDArray[np.intp]) -> float:
-    """Return the mean of the minimum contrasts over slices of y; `number` is each row's slice."""
-    parts = (y[number == k] for k in range(number.max() + 1))
-    return sum(_least_contrast(part, p) * len(part) for part in parts) / len(y)
+def _remains(
+    column: Floats,
+    y: Floats,
+    probabilities: Sequence[float],
+    cases: Sequence[tuple[NDArray[np.intp], int]],
+) -> list[float]:
+    """Return for each quantile the mean of the minimum contrasts over slices of an input."""
+    remains, contrasts = [], dict[int, Floats]()  # of all quantiles, by the slices they share
+    for i, number in enumerate(slices_along(column, cases)):
+        if is_undivided(column, number):
+            remains.append(np.nan)
+            continue
+        if id(number) not in contrasts:
+            parts = _parts(y, number)
+            least = np.array([_least_contrasts(part, probabilities) for part in parts])
+            contrasts[id(number)] = sum(least * np.array([[len(part)] for part in parts])) / len(y)
+        remains.append(float(contrasts[id(number)][i]))
+    return remains
+
+
+def _parts(y: Floats, number: NDArray[np.intp]) -> list[Floats]:
+    """Return y of each slice, its rows in their order."""
+    order = np.argsort(number.astype(np.uint16), kind="stable")  # by counting: slices are few
+    return np.split(y[order], np.cumsum(np.bincount(number))[:-1])

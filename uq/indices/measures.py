@@ -1,6 +1,6 @@
 """Given-data sensitivity measures: random balance, correlation ratio, delta, PAWN, KS distance."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import scipy  # which imports scipy.stats when it is first used
@@ -59,14 +59,42 @@ def slice_of(column: Floats, cuts: NDArray[np.intp], least: int = LEAST_ROWS) ->
         its label, and rare values share a slice. If there are many values, the cuts move to the
         ends of ties.
     """
-    values, place, counts = np.unique(column, return_inverse=True, return_counts=True)
-    if len(values) <= max(MOST_CATEGORIES, len(cuts) + 1):
-        return np.asarray(_categories(counts, least)[place])
-    ends = np.cumsum(counts)
+    return slices_along(column, [(cuts, least)])[0]
+
+
+def slices_along(
+    column: Floats, cases: Sequence[tuple[NDArray[np.intp], int]]
+) -> list[NDArray[np.intp]]:
+    """Return what `slice_of` does in several cases of `cuts` and `least`.
+
+    The rows are sorted once. Cases with equal slices share an array.
+    """
+    column = np.ascontiguousarray(column)
+    ascending = np.sort(column)
+    starts = np.flatnonzero(np.append(True, ascending[1:] != ascending[:-1]))
+    values, ends = ascending[starts], np.append(starts[1:], len(column))
+    numbers: dict[tuple[int, ...], NDArray[np.intp]] = {}
+    slices = []
+    for cuts, least in cases:
+        is_category = len(values) <= max(MOST_CATEGORIES, len(cuts) + 1)
+        places = _categories(ends - starts, least) if is_category else _cuts_at_ends(ends, cuts)
+        key = is_category, *places.tolist()
+        if key not in numbers:
+            if is_category:
+                numbers[key] = places[np.searchsorted(values, column)]
+            else:
+                firsts = values[np.searchsorted(starts, places)]
+                numbers[key] = np.searchsorted(firsts, column, side="right")
+        slices.append(numbers[key])
+    return slices
+
+
+def _cuts_at_ends(ends: NDArray[np.intp], cuts: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return the cuts moved to the nearest ends of ties."""
     above = np.minimum(np.searchsorted(ends, cuts), len(ends) - 2)
     below = np.maximum(above - 1, 0)
     nearest = np.where(cuts - ends[below] < ends[above] - cuts, ends[below], ends[above])
-    return np.asarray(np.searchsorted(np.unique(nearest), ends - counts, side="right")[place])
+    return np.unique(nearest)
 
 
 def _categories(counts: NDArray[np.intp], least: int) -> NDArray[np.intp]:
@@ -90,13 +118,17 @@ def by_slices(
 
     NaN if an input varies only within one slice; see `slice_of`.
     """
-    numbers = [slice_of(column, cuts, least) for column in x.T]
-    return np.array(
-        [
-            measure(number) if number.any() or not np.ptp(column) else np.nan
-            for column, number in zip(x.T, numbers, strict=True)
-        ]
-    )
+
+    def index(column: Floats) -> float:
+        number = slice_of(column, cuts, least)
+        return np.nan if is_undivided(column, number) else measure(number)
+
+    return np.array([index(column) for column in x.T])
+
+
+def is_undivided(column: Floats, number: NDArray[np.intp]) -> bool:
+    """Return whether an input varies, but only within one slice."""
+    return not number.any() and bool(np.ptp(column))
 
 
 def even_cuts(rows: int, slices: int) -> NDArray[np.intp]:

@@ -2,9 +2,12 @@
 
 import keyword
 import os
+import re
 from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from inspect import isfunction
 from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -12,12 +15,12 @@ from typing import Annotated, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats, Model, Parameter, Status, censored_name
+from uq.contract import Floats, Model, Output, Parameter, Status, censored_name
 from uq.errors import InputError, described
 from uq.machines.returned import Returned, RowError, checked, dimensions
 from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import unknown
-from uq.text.quantities import fault_of_unit
+from uq.text.quantities import fault_of_unit, read_quantity
 
 _NO_PROPOSALS = StudyDefaults()
 
@@ -26,6 +29,14 @@ SEED = "seed"
 
 _TAKEN = (
     "row replicate group block world unit repeat status rerun".split()  # of a result itself
+)
+
+_PURE = ("1", "cycles")  # units in which a life may be counted
+_LIFE = re.compile(
+    r"(?!.*_(error|sd|ratio|share|fraction)$)"
+    r"((.*_)?(life|lives|lifetimes?|ttf)(_(s|h|min|seconds|minutes|hours|days|years|cycles))?"
+    r"|(.*_)?(time|hours|days|years|cycles)_(to|until)_.+|(.*_)?(failure|survival)_time)",
+    re.IGNORECASE,
 )
 
 Fields = Mapping[str, tuple[Parameter, float]]
@@ -227,3 +238,38 @@ def _is_too_long(error: BaseException) -> bool:
     """Whether a generator of random numbers takes no seed of 64 bits."""
     text = str(error).lower()
     return isinstance(error, ValueError | OverflowError) and ("seed" in text or "too large" in text)
+
+
+def undeclared_lives(model: Model, names: tuple[str, ...] = ()) -> Iterator[str]:
+    """Yield a hint for each output that is named like a life but not declared as a lifetime.
+
+    Parameters
+    ----------
+    model : Model
+    names : tuple of str
+        Outputs; all if not given.
+    """
+    for name in names or model.outputs:
+        output = model.outputs[name]
+        if output.kind == "value" and _LIFE.fullmatch(name) and _may_be_time(output):
+            yield (
+                f"output '{name}' is not declared as a life: no survival curve, no B-lives, no"
+                f" hours or days; if it is one, {_declaration_of_life(model, name)}"
+            )
+
+
+def _declaration_of_life(model: Model, name: str) -> str:
+    if not isinstance(model.batch, RowByRow):
+        return "give its Output kind = 'lifetime'"
+    function = model.batch.function
+    if isfunction(getattr(function, "py_func", function)):
+        return f"write @uq.machine(returns={{'{name}': uq.Returned('s', life=True)}})"
+    return "state life = true, unit = 's' where the machine describes it"
+
+
+def _may_be_time(output: Output) -> bool:
+    if output.unit in _PURE:
+        return True
+    with suppress(ValueError):
+        return read_quantity(f"1 {output.unit}").dimensions == {"s": 1}
+    return False

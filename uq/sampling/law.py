@@ -14,7 +14,7 @@ Positive = Annotated[float, Field(gt=0)]
 LIST = Field(strict=False)
 """Configuration of a tuple field: TOML has only lists, and the items stay strictly typed."""
 
-STRICT = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+STRICT = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False, defer_build=True)
 """Pydantic configuration of every table of a study file."""
 
 

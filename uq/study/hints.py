@@ -3,22 +3,19 @@
 Hints are not faults: each may be intended.
 """
 
-import re
 from collections.abc import Iterator
-from contextlib import suppress
-from inspect import isfunction
 from math import prod
 from typing import TYPE_CHECKING
 
-from uq.contract import Model, Output
+from uq.contract import Model
 from uq.indices.methods import METHODS, fed_by
-from uq.machines.row_by_row import RowByRow
+from uq.machines.row_by_row import undeclared_lives
 from uq.sampling.designs import DESIGNS, PATHS, PLAIN
 from uq.stats.order_statistics import is_within, rows_for_bound, rows_to_reach
 from uq.stats.quantile_functions import student
 from uq.study.file import USUAL
 from uq.text.numbers import counted, listed
-from uq.text.quantities import nearest_unit, read_quantity, unknown_factor
+from uq.text.quantities import nearest_unit, unknown_factor
 
 if TYPE_CHECKING:
     from uq.study.definition import Study
@@ -28,13 +25,6 @@ REPLICATES = 8
 
 _LARGE_CV = 2.0
 _FEW = 3  # replicates with which an interval is about twice as wide, or more
-_PURE = ("1", "cycles")  # units in which a life may be counted
-_LIFE = re.compile(
-    r"(?!.*_(error|sd|ratio|share|fraction)$)"
-    r"((.*_)?(life|lives|lifetimes?|ttf)(_(s|h|min|seconds|minutes|hours|days|years|cycles))?"
-    r"|(.*_)?(time|hours|days|years|cycles)_(to|until)_.+|(.*_)?(failure|survival)_time)",
-    re.IGNORECASE,
-)
 
 
 def hints(study: "Study") -> list[str]:
@@ -76,41 +66,6 @@ def _unknown_units(model: Model) -> Iterator[str]:
                 f"{owner} has unit '{unit}': '{odd}' is not a usual unit{nearest_unit(odd)}; as a"
                 " unit of your own it is shown as written, and no other unit converts to it"
             )
-
-
-def undeclared_lives(model: Model, names: tuple[str, ...] = ()) -> Iterator[str]:
-    """Yield a hint for each output that is named like a life but not declared as a lifetime.
-
-    Parameters
-    ----------
-    model : Model
-    names : tuple of str
-        Outputs; all if not given.
-    """
-    for name in names or model.outputs:
-        output = model.outputs[name]
-        if output.kind == "value" and _LIFE.fullmatch(name) and _may_be_time(output):
-            yield (
-                f"output '{name}' is not declared as a life: no survival curve, no B-lives, no"
-                f" hours or days; if it is one, {_declaration_of_life(model, name)}"
-            )
-
-
-def _declaration_of_life(model: Model, name: str) -> str:
-    if not isinstance(model.batch, RowByRow):
-        return "give its Output kind = 'lifetime'"
-    function = model.batch.function
-    if isfunction(getattr(function, "py_func", function)):
-        return f"write @uq.machine(returns={{'{name}': uq.Returned('s', life=True)}})"
-    return "state life = true, unit = 's' where the machine describes it"
-
-
-def _may_be_time(output: Output) -> bool:
-    if output.unit in _PURE:
-        return True
-    with suppress(ValueError):
-        return read_quantity(f"1 {output.unit}").dimensions == {"s": 1}
-    return False
 
 
 def _intervals(study: "Study") -> Iterator[str]:

@@ -1,6 +1,7 @@
 """Consistency checks of inputs with each other, their parameters and the design."""
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -67,6 +68,11 @@ def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, 
 
 def laws_of(text: str) -> dict[str, Law]:
     """Return the laws in the study text of a result, with their listed values."""
+    return dict(_laws_of(text))
+
+
+@lru_cache(maxsize=2)  # the one of a result is read by each of its numbers
+def _laws_of(text: str) -> dict[str, Law]:
     data = parse(text, "study of this result")
     tables = sound_entries(data, shape_faults(data))
     entries, _ = read_entries(tables, columns_of_files(tables, None)[0])

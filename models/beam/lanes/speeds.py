@@ -7,7 +7,7 @@ difference between the trace and this sum: its velocity is that of a cubic splin
 """
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy  # which imports scipy.interpolate when it is first used
 
 from models.beam.lanes.layout import X1, X2, P, modes_of
 from models.beam.lanes.recurrence import is_static, mode_step
@@ -105,5 +105,5 @@ def speeds(system: System, state: Array, gaps: Array, trace: Array) -> Array:
         if b.is_random[n]:
             tip = np.append(state[n, 2 * modes_of(state) + X1], trace[n])
             rest = tip - x - (steady.real * c - steady.imag * s)
-            out[n] += CubicSpline(phase, rest)(phase[1:], 1)
+            out[n] += scipy.interpolate.CubicSpline(phase, rest)(phase[1:], 1)
     return out

@@ -17,6 +17,7 @@ Reading order; a module imports only those above it:
     responses       settled responses of many rods, each from the one before it
     lives           rows integrated by turns, each as far as its responses go
     shared_lives    rows that differ only in what scales their lives
+    life_outputs    outputs that depend on lives
     batch           from rows of parameters to outputs
     again           the same from work-rates mapped before
 """

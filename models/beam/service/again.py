@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.parameters import FACTORS, OF_PROCESSES, Params, Rows, Settings
-from models.beam.service.batch import add_gaps, add_openings, follow, refused_rows
+from models.beam.service.batch import add_openings, refuse, refused_rows
+from models.beam.service.life_outputs import add_gaps, follow
 from models.beam.service.lives import OF_WEAR
 from models.beam.service.work_maps import WorkMaps
 from models.beam.structure.modal import Array
@@ -70,7 +71,9 @@ def again(x: Array, seed: NDArray[np.uint64], settings: Settings, kept: Kept) ->
     refused = refused_rows(p, settings)
     followed = ~np.isnan(outputs["work_rate_heavy"])
     status[~followed] = Status.NON_FINITE
-    follow(outputs, status, p, seed, settings, followed, refused, maps)
+    followed &= ~np.isin(np.arange(n), list(refused))
+    follow(outputs, status, p, seed, settings, followed, maps)
+    refuse(outputs, status, refused)
     reasons = dict.fromkeys(np.flatnonzero(status == Status.OUT_OF_BUDGET).tolist(), _NOT_MAPPED)
     return outputs, status, reasons | refused
 

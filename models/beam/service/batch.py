@@ -7,27 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam import batch as of_the_beam
+from models.beam.outputs import MAP_NODES
 from models.beam.parameters import Params, Rows, Settings
 from models.beam.processes import NO_OPENING, has_processes, never_opens
-from models.beam.service.lives import (
-    ServiceLives,
-    drift_of,
-    gaps_when_new,
-    scars_of,
-)
-from models.beam.service.shared_lives import find_shared_lives
-from models.beam.service.work_maps import WorkMaps, no_maps
-from models.beam.start import wear_shares
 from models.beam.structure.modal import Array
-from models.numerics.duty import history_numbers
-from models.numerics.gap_drift import drift
-from models.numerics.scars import scar_volume
 from uq.contract import Status
 
 _Beams = tuple[dict[str, NDArray[Any]], NDArray[np.int8]]
 _Batch = _Beams | tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]
-
-_MAPS = ("mapped_gap", "mapped_work_rate", "mapped_work_rate_error")
 
 
 def batch(x: Array, seed: NDArray[np.uint64], settings: Settings) -> _Batch:
@@ -57,42 +44,27 @@ def batch(x: Array, seed: NDArray[np.uint64], settings: Settings) -> _Batch:
     if settings.growths:
         _add_growths(outputs, x, seed, settings, ~slow)
     add_openings(outputs)
-    if settings.instants:
-        add_gaps(outputs, p, settings)
     if settings.map_growth > 0:
         _add_maps(outputs, settings)
-    followed = slow & (status != Status.NON_FINITE) & ~np.isnan(outputs["work_rate_heavy"])
     refused = refused_rows(p, settings)
-    follow(outputs, status, p, seed, settings, followed, refused)
+    followed = slow & (status != Status.NON_FINITE) & ~np.isnan(outputs["work_rate_heavy"])
+    followed &= ~np.isin(np.arange(len(x)), list(refused))
+    if settings.instants:
+        from models.beam.service.life_outputs import add_gaps  # late: its kernels are many
+
+        add_gaps(outputs, p, settings)
+    if followed.any():
+        from models.beam.service.life_outputs import follow
+
+        follow(outputs, status, p, seed, settings, followed)
+    refuse(outputs, status, refused)
     return (outputs, status, refused) if refused else (outputs, status)
 
 
-def _add_maps(outputs: dict[str, NDArray[Any]], settings: Settings) -> None:
-    """Add the maps of work-rates of beams, of which nothing is mapped so far."""
-    empty = no_maps(len(outputs["work_rate"]), max(1, len(settings.duty)))
-    gap = np.full(empty.gap.shape, np.nan)
-    for name, values in zip(_MAPS, (gap, empty.work, empty.error), strict=True):
-        outputs[name] = values
-
-
-def follow(
-    outputs: dict[str, NDArray[Any]],
-    status: NDArray[np.int8],
-    p: Rows,
-    seed: NDArray[np.uint64],
-    settings: Settings,
-    followed: NDArray[np.bool_],
-    refused: dict[int, str],
-    maps: WorkMaps | None = None,
+def refuse(
+    outputs: dict[str, NDArray[Any]], status: NDArray[np.int8], refused: dict[int, str]
 ) -> None:
-    """Find the lives of some rods, and set their outputs and status; refuse others."""
-    rows = np.flatnonzero(followed & ~np.isin(np.arange(len(seed)), list(refused)))
-    if len(rows):
-        q: Rows = Params._make(field[rows] for field in p)
-        shares = np.where(q.random_force_level > 0, seed[rows], np.uint64(0))
-        kept = None if maps is None else WorkMaps._make(field[rows] for field in maps)
-        lives = find_shared_lives(q, settings, shares, kept, maps is None)
-        status[rows] = _note(outputs, rows, q, lives, settings)
+    """Set the outputs and status of refused rods."""
     for i in refused:
         status[i] = Status.NON_FINITE
         for values in outputs.values():
@@ -100,6 +72,14 @@ def follow(
                 values[i] = np.nan
             elif values.dtype == np.int8:
                 values[i] = -1
+
+
+def _add_maps(outputs: dict[str, NDArray[Any]], settings: Settings) -> None:
+    """Add the maps of work-rates of beams, of which nothing is mapped so far."""
+    shape = (len(outputs["work_rate"]), max(1, len(settings.duty)), 2)
+    outputs["mapped_gap"] = np.full(shape, np.nan)
+    for name in ("mapped_work_rate", "mapped_work_rate_error"):
+        outputs[name] = np.full((*shape, MAP_NODES, MAP_NODES), np.nan)
 
 
 def refused_rows(p: Rows, settings: Settings) -> dict[int, str]:
@@ -115,22 +95,6 @@ def add_openings(outputs: dict[str, NDArray[Any]]) -> None:
     outputs["time_to_opening_censored"] = np.zeros(sites.shape, bool)
 
 
-def add_gaps(outputs: dict[str, NDArray[Any]], p: Rows, settings: Settings) -> None:
-    """Add the gaps at the instants, and the shares of their growth by wear, from worn depths.
-
-    Both are NaN once the scar has the last of the depths.
-    """
-    history, c = history_numbers(settings.gap_history), drift_of(p)
-    moved = np.array([[drift(t, row, history) for t in settings.instants] for row in c])
-    is_known = outputs["worn_depth"] < settings.depths[-1]
-    worn = np.where(is_known, outputs["worn_depth"], np.nan)
-    by_wear = (1 + p.support_wear_ratio)[:, None, None] * worn
-    grown = by_wear + moved[:, None]
-    outputs["gap"] = gaps_when_new(p)[:, :, None] + grown
-    share = np.full_like(grown, np.nan)
-    outputs["wear_share"] = np.divide(by_wear, grown, out=share, where=grown > 0)
-
-
 def _add_growths(
     outputs: dict[str, NDArray[Any]],
     x: Array,
@@ -143,100 +107,3 @@ def _add_growths(
     again, _ = of_the_beam.batch(x, seed, choices, followed)
     for end in ("", "_error", "_censored"):
         outputs[f"time_to_gap_growth{end}"] = again[f"time_to_depth{end}"]
-
-
-def _note(
-    outputs: dict[str, NDArray[Any]],
-    rows: NDArray[np.intp],
-    p: Rows,
-    lives: ServiceLives,
-    settings: Settings,
-) -> NDArray[np.int8]:
-    """Set the outputs of some rows that depend on their lives; return their status."""
-    n, count, more = len(rows), len(settings.depths), len(settings.growths)
-
-    def put(name: str, part: slice, size: int) -> None:
-        shape = (n, 2, size) if size else (n, 2)
-        outputs[name][rows] = lives.time[:, part].reshape(shape)
-        outputs[f"{name}_error"][rows] = lives.error[:, part].reshape(shape)
-        outputs[f"{name}_censored"][rows] = lives.censored[:, part].reshape(shape)
-
-    put("time_to_depth", slice(0, 2 * count), count)
-    put("time_to_opening", slice(2 * count + 2 * more, None), 0)
-    if more:
-        put("time_to_gap_growth", slice(2 * count, 2 * count + 2 * more), more)
-    sites = lives.time[:, : 2 * count].reshape(n, 2, count)
-    reached = lives.reached[:, : 2 * count].reshape(n, 2, count)
-    # A site that is censored may still be the first: only the times reached count, or none.
-    first = np.where(reached, sites, np.inf).argmin(axis=1)[:, None]
-    censored = lives.censored[:, : 2 * count].reshape(n, 2, count)
-    none = ~reached.any(axis=1) & censored.any(axis=1)
-    for name in ("", "_error", "_censored"):
-        values = outputs[f"time_to_depth{name}"][rows]
-        earlier = np.take_along_axis(values, first, axis=1)[:, 0]
-        outputs[f"first_time_to_depth{name}"][rows] = earlier
-    earliest = np.where(censored, sites, np.inf).min(axis=1)
-    outputs["first_time_to_depth"][rows] = np.where(
-        none, earliest, outputs["first_time_to_depth"][rows]
-    )
-    outputs["first_time_to_depth_censored"][rows] = none
-    linear = linear_lives(outputs["work_rate"][rows], p, settings)
-    outputs["linear_time_to_depth"][rows] = linear
-    life = outputs["first_time_to_depth"][rows]
-    whole = np.asarray(reached.any(axis=1))
-    ratio = np.full_like(linear, np.nan)
-    defined = whole & np.isfinite(linear)
-    outputs["lifetime_ratio"][rows] = np.divide(linear, life, out=ratio, where=defined)
-    outputs["gap_ratio"][rows] = _gap_ratio(p, lives, life, first[:, 0], whole, settings)
-    outputs["regime_changes"][rows] = np.where(lives.lost, np.nan, lives.changes)
-    if settings.instants:
-        worn = np.minimum(lives.worn, settings.depths[-1]).transpose(0, 2, 1)
-        outputs["worn_depth"][rows] = worn
-        outputs["largest_worn_depth"][rows] = worn.max(axis=1)
-        part = {"worn_depth": worn}
-        add_gaps(part, p, settings)
-        for name in ("gap", "wear_share"):
-            outputs[name][rows] = part[name]
-    if settings.map_growth > 0:
-        gap = np.where(np.isfinite(lives.map_gap), lives.map_gap, np.nan)
-        for name, values in zip(_MAPS, (gap, lives.map_work, lives.map_error), strict=True):
-            outputs[name][rows] = values
-    status = np.where(lives.lost | lives.unfinished, Status.OUT_OF_BUDGET, Status.OK)
-    return status.astype(np.int8)
-
-
-def linear_lives(work_rate: Array, p: Rows, settings: Settings) -> Array:
-    """Return the earlier time to each depth at constant work-rates by Archard's law [s], (n, D).
-
-    T = (1 + kappa)^(p - 1) B d^p/(k U).
-    """
-    shares = wear_shares(p)
-    fastest = (work_rate * shares).max(axis=1) * p.wear_coefficient
-    shape = scars_of(p, settings)
-    linear = np.empty((len(fastest), len(settings.depths)))
-    for i in range(len(fastest)):
-        kappa = float(p.support_wear_ratio[i])
-        for j, depth in enumerate(settings.depths):
-            whole = (1 + kappa) * float(depth)
-            volume = scar_volume(whole, shape.factor[i], shape.power[i], shape.tilt[i])
-            linear[i, j] = volume / (1 + kappa) / fastest[i] if fastest[i] > 0 else np.inf
-    return linear
-
-
-def _gap_ratio(
-    p: Rows,
-    lives: ServiceLives,
-    life: Array,
-    first: NDArray[np.intp],
-    whole: NDArray[np.bool_],
-    settings: Settings,
-) -> Array:
-    """Return the gap of the less worn site over that of the other at the first time to depth."""
-    history, c = history_numbers(settings.gap_history), drift_of(p)
-    begin = gaps_when_new(p)
-    ratio = np.full(life.shape, np.nan)
-    for i, j in zip(*np.nonzero(whole), strict=True):
-        gaps = begin[i] + lives.at_depth[i, j] + drift(life[i, j], c[i], history)
-        worn = gaps[first[i, j]]
-        ratio[i, j] = gaps[1 - first[i, j]] / worn if worn > 0 else np.nan
-    return ratio

@@ -7,7 +7,8 @@ from uq.errors import RunError
 from uq.execution import runner
 from uq.execution.loading import load_study
 from uq.explore import rare_events
-from uq.study.hints import hints, undeclared_lives
+from uq.machines.row_by_row import undeclared_lives
+from uq.study.hints import hints
 from uq.study.installed_models import find_model, model_names
 from uq.text.quantities import unknown_factor
 

@@ -4,7 +4,7 @@ import base64
 import re
 from collections.abc import Container, Iterator, Sequence
 from io import BytesIO, StringIO
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import matplotlib as mpl
@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from uq.assess.findings import Findings
 from uq.plots import FIGURES
 from uq.render.figures.catalogue import drawables
-from uq.render.figures.figure import WIDTH, lay_out, styled
+from uq.render.figures.figure import WIDTH, lay_out, styled, ticks_placed_once
 from uq.render.html.indices import output_of
 from uq.text.literals import plain
 from uq.text.units import readable
@@ -157,7 +157,8 @@ def picture(figure: Figure, caption: str, name: str = "") -> Picture:
     lay_out(figure)
     wide = figure.get_figwidth() > WIDTH
     # Identifiers must be unique within a page.
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": name or caption}):
+    settings: Any = {"svg.fonttype": "none", "svg.hashsalt": name or caption}
+    with mpl.rc_context(settings), ticks_placed_once():
         FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
     svg = _embedded(drawn.getvalue(), caption)
     if len(_IMAGE.sub("", svg)) <= HEAVIEST_SVG:
