@@ -55,7 +55,7 @@ MODEL = Model(
     simulate=_simulate,
     coordinates=coordinates,
     dimensions={
-        "depth": ("m", "depth of the rod's scar"),
+        "depth": ("m", "depth of the scar in the cladding"),
         "instant": ("s", "time since wear began"),
         "growth": ("m", "growth of the gap"),
     },

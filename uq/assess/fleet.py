@@ -216,7 +216,7 @@ def fleet_of(
     if enough < place.samples:
         notes.append(f"{samples_have(place.samples - enough)} too few units with a life")
     if lost := int(element.failed.sum()):
-        notes.append(f"{lost} of {len(element.values)} rows failed")
+        notes.append(f"{lost} of {len(element.values)} rows are invalid")
     notes += filter(None, [units.why_not_more, why_no_intervals(result)])
     assumed = {end.assumes for both in fleet_numbers.ends for end in both if end.assumes}
     notes += [

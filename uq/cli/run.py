@@ -94,7 +94,7 @@ def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixe
         if (text := result.dataset["status"].attrs.get(f"example_{status.name.lower()}"))
     ]
     progress.say_plain(
-        f"{failed} of {len(result)} rows failed, more than max_failed = "
+        f"{failed} of {len(result)} rows are invalid, more than max_failed = "
         f"{study.analysis.max_failed:g} allows ({'; '.join(examples)})"
     )
     return 1
