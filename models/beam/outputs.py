@@ -89,8 +89,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "largest_worn_depth": Output(
         "m",
-        "depth of the deeper scar in the cladding (the last depth stands for all greater ones), at"
-        " the instant",
+        "depth of the deeper scar in the cladding (followed up to the last depth), at the instant",
         dims=("instant",),
     ),
     "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),

@@ -155,7 +155,7 @@ def _output_faults(
         optional = [setting for setting in lists if model.setting(setting).optional]
         along = {f"{dim}s" for dim in model.outputs[name].dims}
         optional = [setting for setting in optional if setting in along] or optional
-        yield InputFault(path, f"it needs {choices(optional)} in [settings]", value)
+        yield InputFault(path, f"requires {choices(optional)} in [settings]", value)
     elif no_number and model.outputs[name].is_category:
         yield InputFault(path, f"is a category: {no_number}", value)
 
