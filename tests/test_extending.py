@@ -148,7 +148,7 @@ def test_a_study_of_both_is_run_and_shown(
 ):
     path = asking(write_study, "mirrored", "correlation")
     ended = uq("run", path, "-o", "out.nc", "--workers", "0", "--chunk-rows", "7")
-    assert ended.code == 0 and "64 runs, 0 failed" in ended.out and "mirrored" in ended.out
+    assert ended.code == 0 and "64 runs, 0 invalid" in ended.out and "mirrored" in ended.out
     ds = open_result("out.nc")
     np.testing.assert_allclose(ds["x1"][1::2], 1 - ds["x1"][::2])
     values = sensitivity(ds)["R2"].sel(output="y").values

@@ -105,7 +105,7 @@ def test_a_machine_is_listed_simulated_run_and_documented(
 
     path = write_study("pendulum", uncertain=("length",))
     ended = uq("run", path, "-o", "out.nc", "--workers", "0")
-    assert ended.code == 0 and "small   64 runs, 0 failed" in ended.out
+    assert ended.code == 0 and "small   64 runs, 0 invalid" in ended.out
     ds = open_result("out.nc")
     np.testing.assert_allclose(ds["period"], 2 * np.pi * np.sqrt(ds["length"] / 9.81))
     assert summary(ds).index.tolist() == ["period"]

@@ -63,7 +63,7 @@ MODEL = Model(
     coordinates=coordinates,
     refusal=refusal,
     dimensions={
-        "depth": ("m", "depth of the rod's scar"),
+        "depth": ("m", "depth of the scar in the cladding"),
         "instant": ("s", "time since wear began"),
         "growth": ("m", "growth of the gap"),
         "right_growth": ("m", "growth of the right gap"),

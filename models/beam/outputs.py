@@ -57,7 +57,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "time_to_depth": Output(
         "s",
-        "time until the rod's scar at the site reaches the depth",
+        "time until the scar in the cladding at the site reaches the depth",
         "lifetime",
         ("site", "depth"),
         accuracy="accuracy",
@@ -72,7 +72,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "first_time_to_depth": Output(
         "s",
-        "time until the rod's scar at either site reaches the depth",
+        "time until the scar in the cladding at either site reaches the depth",
         "lifetime",
         ("depth",),
         accuracy="accuracy",
@@ -107,13 +107,13 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "worn_depth": Output(
         "m",
-        "depth of the rod's scar at the site by the instant, nine in ten within the accuracy of"
-        " lives; the last of the depths once that is reached",
+        "depth of the scar in the cladding at the site by the instant, nine in ten within the"
+        " accuracy of lives; the last of the depths once that is reached",
         dims=("site", "instant"),
     ),
     "largest_worn_depth": Output(
         "m",
-        "larger worn depth of the two sites, at most the last of the depths, at the instant",
+        "depth of the deeper scar in the cladding (followed up to the last depth), at the instant",
         dims=("instant",),
     ),
     "gap": Output(

@@ -112,7 +112,7 @@ class Params(NamedTuple):
     gap_history_factor: Annotated[float, Parameter(
         "f", "1", "factor on the setting gap_history", (0.0, 100.0), "assumed: exact")] = 1.0
     oxide_thickness: Annotated[float, Parameter(
-        "delta_ox", "m", "depth of the rod's scar down to which oxide wears", (0.0, 1e-3),
+        "delta_ox", "m", "depth of the scar in the cladding down to which oxide wears", (0.0, 1e-3),
         "assumed: none")] = 0.0
     oxide_wear_factor: Annotated[float, Parameter(
         "psi_ox", "1", "rate of wear of the oxide over that of the rod", (1e-3, 1e3),
@@ -168,7 +168,8 @@ class Settings:
     depths: Annotated[
         tuple[float | str, ...],
         Setting(
-            "depths of the rod's scar whose lives are reported; '40 %' is a share of the wall",
+            "depths of the scar in the cladding whose lives are reported; '40 %' is a share of the"
+            " wall",
             "m",
             bounds=(1e-9, 1e-1),
         ),

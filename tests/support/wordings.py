@@ -68,11 +68,11 @@ STUDY_FAULTS = [
     ),
     (
         {"design": {"method": "saltelli", "samples": 1000}},
-        "[design] samples = 1000: must be a power of two; the next is 1024 for 'saltelli'",
+        "[design] samples = 1000: must be a power of two, 512 or 1024, for 'saltelli'",
     ),
     (
         {"design": {"method": "sobol", "samples": 1000}},
-        "[design] samples = 1000: must be a power of two; the next is 1024 for 'sobol'",
+        "[design] samples = 1000: must be a power of two, 512 or 1024, for 'sobol'",
     ),
     ({"design": {"samples": 0}}, "[design] samples = 0: must be at least 1"),
     ({"design": {"samples": 2**31}}, "[design] samples = 2147483648: must be at most 1073741824"),
@@ -312,7 +312,7 @@ SENTENCES = {
     "nothing written": "interrupted; nothing was written",
     "resumes": "the same command resumes the run\n",
     "unwritten": "{place}: could not be written: {why}",
-    "too many failed": "rows failed, more than max_failed = {share} allows ({status}: row ",
+    "too many failed": "rows are invalid, more than max_failed = {share} allows ({status}: row ",
     # of other rows, other code, other processes
     "another study": (
         "{rows}: has rows of another study ({change}); choose another output, or start over with "
@@ -345,7 +345,7 @@ SENTENCES = {
     # of results
     "no file": "{name}: no such file",
     "no fewer samples": "no estimates from fewer samples",
-    "size": "must be a power of two; the next is {next}",
+    "size": "must be a power of two, {least} or {next},",
 }
 
 

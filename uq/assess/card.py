@@ -284,7 +284,7 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
         share = percent(answer.failed / max(answer.rows, 1))
         codes = np.unique(result.dataset["status"].values[result.failed])
         kinds = ", ".join(Status(code).label for code in codes)
-        yield f"{share} of the {plural} failed ({kinds}) and are left out"
+        yield f"{share} of the {plural} are invalid ({kinds}) and left out"
     if findings.summary.why_ended:
         yield findings.summary.why_ended
     if enough.unknown:
@@ -294,7 +294,7 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
         clause = clause.partition(":")[0] if clause == no_causes else clause
         yield f"not settled: {clause}" if enough.errors else f"too few {plural}: {clause}"
     else:
-        yield f"enough {plural}" + " but for the failures" * bool(answer.failed)
+        yield f"enough {plural}" + " but for the invalid ones" * bool(answer.failed)
     if enough.errors is not None:
         yield f"numerical error exceeds sampling error (of the {enough.errors.estimate})"
     error = {} if lead is None or lead.own_error is None else lead.own_error.members
@@ -325,7 +325,7 @@ def _next(result: Result, answer: Answer) -> Iterator[str]:
                 yield _more_rows(result, entry.rows)
             case "failed":
                 again = f"uq rerun {result.file} --failed{result.model_option}"
-                yield f"fix the failed rows, then {again}"
+                yield f"fix the invalid rows, then {again}"
             case "finer":
                 finer = answer.enough.setting or "use finer settings"
                 yield f"{finer}, not more {result.row_name[1]}"
@@ -351,7 +351,7 @@ def _more_rows(result: Result, rows: int) -> str:
     rows, samples = rounded_size(rows, result)
     if samples == rows:
         return f"{STUDY} about {rows_in_words(rows)} {result.row_name[1]} in all"
-    return f"{STUDY} {grouped(rows)} {result.row_name[1]} in all (samples = {samples})"
+    return f"{STUDY} {grouped(rows)} {result.row_name[1]} in all (set samples = {samples})"
 
 
 def statistic_name(tolerance: TighterTolerance) -> str:

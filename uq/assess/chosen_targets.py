@@ -198,7 +198,7 @@ def chosen(
             if asked.aggregates:
                 yield from wholes(_elements(result, name))
         if not has_suitable and result.failed.all():
-            raise InputError("every row failed: no index can be estimated")
+            raise InputError("every row is invalid: no index can be estimated")
         if not has_suitable and not asked.takes_numbers:
             raise InputError(
                 f"'{method}' needs an event: a category, or a lifetime with a threshold in"

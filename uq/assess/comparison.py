@@ -310,7 +310,7 @@ def _notes(
     for which, summary in zip("AB", summaries, strict=True):
         yield from (f"{which}: {note}" for note in summary.notes)
     if any(summary.most_failed for summary in summaries):
-        yield "Differences are between the rows that did not fail."
+        yield "Differences are between the valid rows."
     for which, mine, other in zip("AB", elements, elements[::-1], strict=True):
         if alone := [name for name in mine if name not in other]:
             yield f"Only {which} has {', '.join(alone)}."

@@ -84,6 +84,14 @@ class Fleet:
         return [*exactly, *worth, *self.notes]
 
 
+_SAMPLING = "the 95 % intervals cover sampling only, not the laws of the inputs, taken as exact"
+_BETWEEN = "what all units of a fleet share spreads it from the 5 to the 95 % points"
+_ALIKE = (
+    "no input is shared by all units; a value common to all but unknown needs level = 'shared', and"
+    " widens the spread of fleets"
+)
+
+
 def fleet(
     result: AnyResult,
     size: int,
@@ -216,8 +224,10 @@ def fleet_of(
     if enough < place.samples:
         notes.append(f"{samples_have(place.samples - enough)} too few units with a life")
     if lost := int(element.failed.sum()):
-        notes.append(f"{lost} of {len(element.values)} rows failed")
+        notes.append(f"{lost} of {len(element.values)} rows are invalid")
     notes += filter(None, [units.why_not_more, why_no_intervals(result)])
+    if not why_no_intervals(result):
+        notes.append(f"{_SAMPLING}: {_BETWEEN if varies else _ALIKE}")
     assumed = {end.assumes for both in fleet_numbers.ends for end in both if end.assumes}
     notes += [
         f"the 5 and 95 % points assume {assumption.removeprefix('that ')}" for assumption in assumed

@@ -17,6 +17,7 @@ from uq.sampling.dependence import normal_correlations
 from uq.sampling.truncation import OUTSIDE_AT_MOST, factor_ends, log_density_between, ppf_within
 from uq.stats.dependent_rows import Dependence
 from uq.stats.importance_weights import ImportanceWeights, impossible_weights, smoothed
+from uq.text.numbers import percent
 
 
 def log_ratio(rows: int, old: Inputs, new: Inputs, integrated: Collection[str] = ()) -> Floats:
@@ -174,8 +175,8 @@ class Weighting:
             if name not in inputs and (share := share_without_rows(self._old, self._new, name)):
                 return impossible_weights(
                     len(self._rows),
-                    f"uncertain.{name}: has {share:.2g} of its probability outside the study's"
-                    " law, where there are no rows; run it as a separate study",
+                    f"uncertain.{name}: {percent(share)} of its probability is where there are no"
+                    " rows; run it as a separate study",
                 )
         weights = log_ratio(len(self._rows), self._old, self._new, inputs)
         if not np.isfinite(weights.max()):

@@ -230,7 +230,7 @@ class Statistic:
             return self.kind.words(value / per)
         if self.rows_needed is not None:
             never = isinf(self.rows_needed)
-            return "too many failed" if never else f"needs {self.rows_needed:.0f} rows"
+            return "too many invalid" if never else f"needs {self.rows_needed:.0f} rows"
         return "-" if self.otherwise else value_text(self.estimate)  # it may be within the horizon
 
     def interval(self, per: float = 1.0) -> str:

@@ -175,7 +175,7 @@ def _lost(element: Element) -> str:
     """Return the number of failed and undefined rows of an element, in words."""
     failed, undefined = int(element.failed.sum()), int(element.undefined.sum())
     return " and ".join(
-        [counted(failed, "failed row")] * (failed > 0)
+        [counted(failed, "invalid row")] * (failed > 0)
         + [counted(undefined, "undefined row")] * (undefined > 0)
     )
 

@@ -43,8 +43,8 @@ SEVERAL_ROWS = (
 NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
 
 SOME_FAILED = (
-    "{most} of {rows} independent rows failed. Estimates use the others; each probability,"
-    " quantile and B-life also has bounds with the failed rows at best and at worst"
+    "{most} of {rows} independent rows are invalid. Estimates use the others; each probability,"
+    " quantile and B-life also has bounds with the invalid rows at best and at worst"
 )
 
 

@@ -117,9 +117,9 @@ _MEANINGS = {
     "rows": "number of rows with a lifetime",
     "censored": "number of rows with a lower bound only",
     "undefined": "number of rows with an undefined lifetime",
-    "failed": "number of rows that failed",
-    "failed_low": "lower end of the pointwise 95 % interval if the failed rows had ended at once",
-    "failed_high": "upper end of the pointwise 95 % interval if the failed rows never ended",
+    "failed": "number of invalid rows",
+    "failed_low": "lower end of the pointwise 95 % interval if the invalid rows had ended at once",
+    "failed_high": "upper end of the pointwise 95 % interval if the invalid rows never ended",
 }
 
 

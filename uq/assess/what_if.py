@@ -19,13 +19,15 @@ from uq.errors import InputError
 from uq.result.result import AnyResult, Result
 from uq.sampling.dependence import matrix_problem
 from uq.sampling.input_faults import InputFault
+from uq.sampling.listed_values import Empirical
 from uq.sampling.truncation import law_problem
 from uq.stats.estimate_json import number
 from uq.stats.importance_weights import ImportanceWeights, effective_rows, tail_shape
 from uq.study.changes import change, study_text
 from uq.study.file import AnalysisTable, StudyFile
-from uq.study.reading import read_study_text
+from uq.study.reading import law_in_units, read_study_text
 from uq.text.literals import read_toml, shown
+from uq.text.quantities import read_quantity
 
 SAME = "what if: 'equals' cannot be changed"
 
@@ -152,14 +154,25 @@ def read_changes(texts: Sequence[str]) -> dict[str, Any]:
         if name in changes:
             raise InputError(f"--set {shown(text)}: {name} is changed twice")
         try:
-            if not (name and equals):
+            if not (name and equals and value.strip()):
                 raise ValueError
-            changes[name] = read_toml(f"x = {value}")["x"]
+            changes[name] = _value(value.strip())
         except (ValueError, OverflowError, RecursionError):
             raise InputError(
-                f"--set {shown(text)}: must be uncertain.NAME.KEY=VALUE, the value as in TOML"
+                f"--set {shown(text)}: must be uncertain.NAME.KEY=VALUE, the value a number, a"
+                " number with its unit, or TOML"
             ) from None
     return changes
+
+
+def _value(text: str) -> Any:
+    """Return a value: TOML, a quantity such as ``20 um``, or a word such as ``normal``."""
+    try:
+        return read_toml(f"x = {text}")["x"]
+    except ValueError:
+        if not text.replace("-", "_").isidentifier():
+            read_quantity(text)
+        return text
 
 
 def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
@@ -167,6 +180,13 @@ def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
     data = read_toml(rows.dataset.attrs["study"])
     for place, value in changes.items():
         _put(data, place, value)
+    for name in [name for name in data["uncertain"] if name in rows.dataset]:
+        units = str(rows.dataset[name].attrs["units"])
+        misfits = law_in_units(data["uncertain"][name], name, units)
+        if misfits:
+            raise InputError(
+                *(f"what if: {'.'.join(path)}: {why}" for path, why in misfits.items())
+            )
     text = study_text(data)
     study = read_study_text(text, "what if")
     inputs = inputs_of(rows, study, text)
@@ -176,23 +196,34 @@ def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
     return inputs
 
 
+_KEPT = ("source", "file", "times", "level")
+_OF_MEASURED = ("", "distribution", "truncate", "source", "times", "level")
+"""Entries of a law of measured values that may change, or that are refused for another reason."""
+
+
 def changeable(laws: Mapping[str, Mapping[str, Any]]) -> list[str]:
     """Return the entries of a table [uncertain] that a what-if can change: ``rate.sigma``."""
     return [
         f"{name}.{key}"
         for name, law in laws.items()
         for key in law
-        if "equals" not in law and key not in ("source", "file", "times", "level")
+        if "equals" not in law and key not in _KEPT
+        if law.get("distribution") != "empirical" or key in _OF_MEASURED
     ]
 
 
 def _remedy(place: str, laws: Mapping[str, Mapping[str, Any]]) -> str:
     """Return what to write in place of an entry that cannot be changed."""
     entries = changeable(laws)
-    meant = [entry for entry in entries if entry == place or entry.endswith(f".{place}")]
+    numbers = [entry for entry in entries if not entry.endswith(".distribution")]
+    inputs = [place] if place in laws else [name for name in laws if place in name.split("_")]
+    meant = [entry for entry in numbers if entry.partition(".")[0] in inputs]
+    meant = meant or [entry for entry in entries if entry == place or entry.endswith(f".{place}")]
     close = meant or get_close_matches(place, [*entries, *laws], n=1)
     if close:
         return "did you mean " + " or ".join(f"'uncertain.{entry}'" for entry in close) + "?"
+    if place.partition(".")[0] in StudyFile.model_fields:
+        return "it needs rows of its own: change it in a study, and run that"
     return "only uncertain.NAME.KEY, uncertain.NAME and dependence.rank_correlation can"
 
 
@@ -214,7 +245,21 @@ def _put(data: dict[str, Any], place: str, value: Any) -> None:
         raise InputError(f"what if: {problem}; {_remedy(rest, laws)}")
     if argument == "equals":
         raise InputError(SAME)
+    is_measured = laws[name].get("distribution") == "empirical"
+    is_value = not argument and not isinstance(value, Mapping)
+    if is_measured and (is_value or argument not in _OF_MEASURED):
+        raise InputError(_measured(name))
+    if is_value:
+        raise InputError(f"what if: '{name}' has a law, not a value; {_remedy(name, laws)}")
     change(data, place, value, "what if")
+
+
+def _measured(name: str) -> str:
+    """Return the refusal of other values than those measured."""
+    return (
+        f"what if: '{name}' has measured values, and the result no rows at others: change"
+        f" 'uncertain.{name}.truncate', or run a study with the other law"
+    )
 
 
 def _faults(rows: Result, study: StudyFile, inputs: Inputs) -> list[InputFault]:
@@ -235,12 +280,17 @@ def _refuse(result: Result, old: Inputs, new: Inputs) -> None:
     """Refuse changes that weights do not show."""
     if result.design.imported:
         raise InputError("what if: the rows are imported, and their density is unknown")
+    for name in [name for name in old.laws if name not in new.laws]:
+        if name not in new.tied:  # the file of another law of measured values is not read
+            raise InputError(_measured(name))
     if new.tied != old.tied or list(new.laws) != list(old.laws):
         raise InputError(SAME)
     for name, law in old.laws.items():
         other = new.laws[name]
         if (law.times, law.level) != (other.times, other.level):
             raise InputError(f"what if: times and level of '{name}' cannot be changed")
+        if law.discrete != other.discrete and isinstance(law, Empirical):
+            raise InputError(_measured(name))
         if law.discrete != other.discrete:
             raise InputError(f"what if: '{name}' cannot change between listed and other values")
     if depends_otherwise(old, new):

@@ -208,7 +208,7 @@ def as_json(
 def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed]) -> None:
     heading(study.path, study.description)
     processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
-    pilot_rows = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
+    pilot_rows = f"from {cost.pilot_rows} of them" + (f", {failures} invalid" if failures else "")
     sure = cost.seconds_high < _SURE * cost.seconds
     compiled = "" if isinstance(study.model.batch, RowByRow) else ", once the model is compiled"
     band = "" if sure else f"; {elapsed(cost.seconds_low)} to {elapsed(cost.seconds_high)}"
@@ -229,7 +229,7 @@ def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed])
 def _why_needed(needed: Needed, cost: Cost) -> str:
     bounds = f"the {needed.bounds} bounds that hold at once" if needed.bounds > 1 else "a bound"
     short = ": more than the study has" if needed.rows > cost.rows else ""
-    return f"needed for {bounds}, if none fails{short}"
+    return f"needed for {bounds}, if no row is invalid{short}"
 
 
 def _show_widths(widths: Mapping[str, Widths], independent: bool) -> None:

@@ -75,7 +75,7 @@ def twin(result: Path, model: str | None, json: bool) -> None:
             if sharper.note:
                 paragraph(f"{target.label(label)}: {sharper.note}", indent=2)
             if worst := failed_bounds_text(sharper.failed):
-                both = "with failed rows at best and worst"
+                both = "with invalid rows at best and worst"
                 paragraph(f"{target.label(label)}, {both}: {worst}", indent=2)
     note(
         "worth: variance reduction factor against plain Monte Carlo, without the cost of the twin's"
@@ -159,4 +159,4 @@ def _lines(label: str, banded: Banded, per: float) -> Iterator[tuple[str, str, s
     for name, end in ((label, banded.estimate), *(("  " + text, end) for text, end in ends)):
         yield name, *cells(end, per)
     if worst := failed_bounds_text(banded.failed, per):
-        yield "  with failed rows", "", worst
+        yield "  with invalid rows", "", worst

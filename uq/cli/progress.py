@@ -170,7 +170,7 @@ def sentence(progress: Progress, pace: float, since: float = 0.0) -> str:
         left = max((progress.total - progress.done) / pace - since, 0.0)
         about = f"about {elapsed(left)}" if left >= _MINUTE else "less than 1 min"
         text += f"{pace:.3g} rows/s, {about} left, "
-    return f"{text}{progress.failed} failed"
+    return f"{text}{progress.failed} invalid"
 
 
 def details(progress: Progress) -> list[str]:

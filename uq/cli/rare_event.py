@@ -42,7 +42,7 @@ def show(ds: xr.Dataset, json: bool, study: Study, threshold: float) -> int:
     if failed <= max_failed:
         return 0
     allowed = f"more than max_failed = {max_failed:g} allows"
-    say(f"{failed:.0%} of the rows failed, {allowed}")
+    say(f"{failed:.0%} of the rows are invalid, {allowed}")
     return 1
 
 
@@ -126,7 +126,7 @@ def _show(ds: xr.Dataset, model: Model, threshold: float) -> None:
             ("probability", _cell(float(ds["probability"]))),
             ("95 % interval", f"{low} to {high}{_part_alone(ds)}"),
             *_shown_unseen(ds),
-            *([("with failed rows inside", f"up to {worst}")] if worst != "-" else []),
+            *([("with invalid rows inside", f"up to {worst}")] if worst != "-" else []),
             ("rows", str(int(ds["rows"]))),
             *((name, str(int(ds[name]))) for name in ("failed", "undefined") if ds[name] > 0),
         ]

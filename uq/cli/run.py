@@ -72,7 +72,7 @@ def carried_out(
 def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixed: bool) -> int:
     """Show the summary of a result; return the exit code.
 
-    Rows computed by other code are reported even where all else is quiet, unless they are wanted.
+    Rows from another version of the code are reported even if all else is quiet, unless wanted.
     """
     say_when_interrupted(f"interrupted; the result is complete in {target}")
     if not mixed and (line := runner.line_on_other_code(study, target, result.dataset)):
@@ -94,7 +94,7 @@ def end(study: Study, result: Result, target: Path, quiet: bool, note: str, mixe
         if (text := result.dataset["status"].attrs.get(f"example_{status.name.lower()}"))
     ]
     progress.say_plain(
-        f"{failed} of {len(result)} rows failed, more than max_failed = "
+        f"{failed} of {len(result)} rows are invalid, more than max_failed = "
         f"{study.analysis.max_failed:g} allows ({'; '.join(examples)})"
     )
     return 1

@@ -176,7 +176,7 @@ def show_outputs(row: Row) -> None:
 def _shown(value: float, state: str, per: float) -> str:
     if state == "censored":
         return f"more than {number(value / per)}"
-    return state or ("failed" if np.isnan(value) else number(value / per))
+    return state or ("invalid" if np.isnan(value) else number(value / per))
 
 
 def _number(text: str, reference: str) -> tuple[str, float]:

@@ -38,7 +38,7 @@ def _show_status(run: RunStatus) -> None:
     grid(
         [
             ("done", f"{run.done} of {run.rows} rows"),
-            ("failed", str(run.failed)),
+            ("invalid", str(run.failed)),
             ("left", ", ".join(filter(None, (str(run.left), time_left)))),
             ("rate", f"{rate:.3g} rows/s" if rate else "-"),
             ("by status", ", ".join(statuses) or "-"),

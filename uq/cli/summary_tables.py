@@ -56,7 +56,7 @@ def show_summary(result: Result, summary: Summary, boundary: Statistic | None = 
     for name, shares in (regimes | summary.categories).items():
         heading(f"\n{name}", str(result.dataset[name.partition("[")[0]].attrs["long_name"]))
         lines = [_share(share) for share in shares.values()]
-        grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
+        grid(lines, header=("", "share", "95 % interval", "rows", "with invalid rows"))
         if name == REGIME and boundary is not None and boundary.estimate.has_interval:
             stated = f"{boundary.label} {boundary.words()} ({interval_text(boundary.estimate)})"
             paragraph(f"{stated}: {in_words(boundary)}", indent=2)
@@ -167,7 +167,7 @@ def _of_statistic(statistic: Statistic, block: Block) -> Iterator[Line]:
         more = f"{percent(undefined)} undefined"
     yield block.label(statistic), statistic.words(per), statistic.interval(per), more
     if worst := failed_bounds_text(statistic.failed, per):
-        yield "  with failed rows", "", worst, ""
+        yield "  with invalid rows", "", worst, ""
 
 
 def _reasons(output: Described, block: Block) -> Iterator[str]:

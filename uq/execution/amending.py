@@ -142,7 +142,7 @@ def rerun_failed(
     changed = changed_settings(study, settings)
     failed = int(np.count_nonzero(result_file.failed(ds)))
     if not failed:
-        options.say(f"{path}: no row failed; nothing to do")
+        options.say(f"{path}: no row is invalid; nothing to do")
         return ds
     new, old = asdict(changed), asdict(study.settings)
     differing = {name: new[name] for name in settings if new[name] != old[name]}

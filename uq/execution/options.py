@@ -72,7 +72,7 @@ class RunOptions:
     fresh : bool
         Whether to overwrite an existing output.
     mixed : bool
-        Whether to reuse rows computed by other code of the model.
+        Whether to reuse rows from another version of the model's code.
     progress : callable
         Called with a `Progress` as rows arrive, and when compilation of the model starts.
     say : callable

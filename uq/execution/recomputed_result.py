@@ -53,8 +53,8 @@ def recompute(result: AnyResult, changes: Mapping[str, Any]) -> xr.Dataset:
     model, n = studied.model, len(result)
     if model.again is None:
         raise InputError(
-            f"what if: rows of '{model.name}' keep nothing from which others can be computed:"
-            " change laws of inputs, uncertain.NAME.KEY"
+            f"what if: rows of '{model.name}' keep nothing from which others are computed:"
+            f" '{next(iter(changes))}' needs rows of its own: change it in a study, and run that"
         )
     study = studied.with_changes(changes)
     before, rows = row_block(studied, 0, n), row_block(study, 0, n)

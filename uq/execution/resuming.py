@@ -52,7 +52,7 @@ def keep(
         rows are reused.
     options : RunOptions
         With ``fresh``, the rows kept so far and the result are dropped; with ``mixed``, rows
-        computed by other code of the model are reused, too.
+        from another version of the model's code are reused, too.
     again : dict, optional
         Reuse only rows that did not fail, and compute the others with these settings instead of
         the study's.
@@ -154,7 +154,7 @@ def _find(store: DiskStore, run_history: History, say: Say) -> None:
 
 
 def _check_code(study: Study, path: Path, origins: Sequence[Mapping[str, object]]) -> None:
-    """Refuse to resume with rows computed by other code of the model."""
+    """Refuse to resume with rows from another version of the model's code."""
     if any(is_other_code(made, study.model_reference) for made in origins):
         raise InputError(
             f"{path}: has rows from other code of model '{study.model.name}' with the same version;"

@@ -71,9 +71,9 @@ def run(
         Called with a `Progress` as rows arrive, and when compilation of the model starts.
     say : callable, optional
         Called with a line for the user: what was found on disk. Without it, a complete result
-        computed by other code of the model is returned with a warning.
+        from another version of the model's code is returned with a warning.
     mixed : bool
-        Also reuse rows computed by other code of the model.
+        Also reuse rows from another version of the model's code.
 
     Returns
     -------

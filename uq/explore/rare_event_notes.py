@@ -57,7 +57,7 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
         )
         if ds["wide_failed"] > 0:
             notes.append(
-                f"{int(ds['wide_failed'])} of {int(ds['wide_rows'])} rows drawn wide failed:"
+                f"{int(ds['wide_failed'])} of {int(ds['wide_rows'])} rows drawn wide are invalid:"
                 " missed parts are not searched for there"
             )
     if np.isnan(most):
@@ -88,7 +88,7 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
     if margin.failed:
         causes = "".join(f"; {label}: {text}" for label, text in margin.failures.items())
         notes.append(
-            f"{margin.failed} of {int(ds['rows'])} rows failed, or were censored before the"
+            f"{margin.failed} of {int(ds['rows'])} rows are invalid, or were censored before the"
             " threshold, and count as outside the event: the probability is a lower bound; with"
             f" them inside, the rows support no more than {float(ds['failed_high']):.2g}{causes}"
         )

@@ -279,8 +279,8 @@ def _importance(
     points = design_points(margin, u, first)
     if not len(points):
         raise InputError(
-            "FORM found no design point: the output is not smooth enough, rows fail on the way, or"
-            " the threshold is out of reach; use method 'subset'"
+            "FORM found no design point: the output is not smooth enough, rows on the way are"
+            " invalid, or the threshold is out of reach; use method 'subset'"
         )
     drawn, weights = zip(*(drawn_around(points, samples, rng) for rng in generators), strict=True)
     inside = margin(np.concatenate(drawn)) > 0

@@ -310,7 +310,7 @@ def _reason(change: str, versions: Mapping[str, tuple[str, str]], source: str) -
     if change:
         return f"another model computed it ({change})"
     if "code" in versions:
-        return "other code of the model computed it"
+        return "another version of the code of the model computed it"
     if versions:
         return f"it was computed with another {', '.join(versions)}"
     return (

@@ -16,11 +16,11 @@ from uq.assess.card import STUDY, Card, LeadingInput, card_of, statistic_name
 from uq.assess.card_numbers import WITH_ERRORS, Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
-from uq.text.numbers import TO_THESE_DIGITS, counted, grouped, percent, percent_interval, printed
+from uq.text.numbers import TO_THESE_DIGITS, counted, percent, percent_interval, printed
 from uq.text.units import beside
 
 WIDTH = 80
-SHORT = 12
+SHORT = 13
 """A card with no more lines has no blank ones and no headers of columns."""
 
 _HEADERS = {
@@ -38,6 +38,7 @@ _HEADERS = {
 The output shift is how far the distribution of the output moves if the input is fixed.
 """
 _INTERVAL = "95 % interval"
+_IN_BRACKETS = f" ({_INTERVAL})"
 _COMMANDS = "--explain  --full  --json"
 _POINTS = "percentage points"
 _BRIEF = {"seconds": "s", "minutes": "min", "hours": "h"}
@@ -165,7 +166,7 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
 
 
 def _title(card: Card) -> Line:
-    rows = f"{counted(card.rows, *card.row_name)}, {grouped(card.failed)} failed"
+    rows = f"{counted(card.rows, *card.row_name)}, {counted(card.failed, 'invalid row')}"
     text = _beside(f"{card.name}   {rows}", f"{card.model}, {card.design}")
     return Line(text, (0, len(card.name)))
 
@@ -197,7 +198,7 @@ def _headlines(
             yield Line(f"  {label:<{wide_label}}{'':<{wide_value // 4}}{value}")
             continue
         start = f"  {label:<{wide_label}}{value:>{wide_value}}"
-        more = f" ({_INTERVAL})" if line is first and is_short else ""
+        more = _IN_BRACKETS if line is first and is_short else ""
         text = f"{start}    {printed(line.note or interval_of(line))}{more}".rstrip()
         place = (len(start) - len(value), len(start)) if line.leads else (0, 0)
         if len(text) <= WIDTH:
@@ -275,15 +276,19 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
     filled = [i for i, column in enumerate(zip(*rows, strict=True)) if any(column)]
     header = [header[i] for i in filled]
     rows = [[row[i] for i in filled] for row in rows]
-    columns = [*zip(*rows, strict=True)]
-    widths = [max(map(len, (*pair, *column))) for pair, column in zip(header, columns, strict=True)]
+    widths = _widths_of(header, rows)
     room = WIDTH - 2 - 2 * (len(widths) - 1)
+    if sum(widths) > room and header[-1][1].endswith(_IN_BRACKETS):
+        header[0] = (header[0][0], _IN_BRACKETS.strip().replace(")", "s)"))
+        header[-1] = (header[-1][0], f"({header[-1][1].removesuffix(_IN_BRACKETS)})")
+        widths = _widths_of(header, rows)
     if is_short:
         for i in range(len(header) - 1, -1, -1):
             wide = len(" ".join(header[i]))
             if sum(widths) - widths[i] + max(wide, widths[i]) <= room:
                 header[i], widths[i] = (" ".join(header[i]), ""), max(wide, widths[i])
-        header = [(upper, "") for upper, _ in header]
+        if not (header[0][1] or header[-1][1]):
+            header = [(upper, "") for upper, _ in header]
     for place, least in ((2, 22), (0, 16), (2, 12)):
         if place < len(widths) - 1:
             too_wide = max(sum(widths) - room, 0)
@@ -297,6 +302,11 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
             parts = [f"{_cut(cell, width):<{width}}" for cell, width in padded]
             if line := "  ".join(parts).rstrip():
                 yield Line(f"  {line}"[:WIDTH], (2, 8) if cells is lines[0] else (0, 0))
+
+
+def _widths_of(header: list[tuple[str, str]], rows: list[list[str]]) -> list[int]:
+    columns = zip(*rows, strict=True)
+    return [max(map(len, (*pair, *column))) for pair, column in zip(header, columns, strict=True)]
 
 
 def _not_halved(card: Card) -> Iterator[Line]:
@@ -320,7 +330,9 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     if tolerances:
         first = tolerances[0]
         name, now = printed(statistic_name(first)), printed(_value(first, first.before.value))
-        header[3] = (f"half scatter: {name}" if step else name, f"(now {now})")
+        has_intervals = any(entry.after.has_interval for entry in tolerances)
+        pattern = f"now {now}{_IN_BRACKETS}" if has_intervals else f"(now {now})"
+        header[3] = (f"half scatter: {name}" if step else name, pattern)
     rows = [
         [
             called_together(cause.contribution.inputs).removeprefix("both "),

@@ -41,7 +41,7 @@ def value_faults(ds: xr.Dataset) -> Iterator[str]:
                 absent = output.is_invalid(values)
                 if absent[is_complete].any():
                     value = values[is_complete][absent[is_complete]][0]
-                    yield f"'{kept}' {output.absence(value)}, in a row that did not fail"
+                    yield f"'{kept}' {output.absence(value)}, in a valid row"
 
 
 def _input_fault(variable: xr.DataArray) -> str:

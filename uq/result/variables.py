@@ -38,6 +38,8 @@ def parameter_variable(
     }
     if uncertain:
         attrs["admissible"] = np.array(declared.bounds)
+    else:
+        attrs["nominal"] = float(model.nominal[name])  # the value to which the source applies
     attrs |= {"initial": 1} if declared.initial else {}
     attrs |= {"level": level} if level else {}
     return (("row",), value, attrs) if uncertain else ((), np.float64(value), attrs)

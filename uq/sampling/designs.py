@@ -217,7 +217,7 @@ class Design:
             return f"must be between {self.least} and {MAX_SAMPLES}"
         legal = 1 << (samples - 1).bit_length()
         if self.power_of_two and samples != legal:
-            return f"must be a power of two; the next is {legal}"
+            return f"must be a power of two, {legal // 2} or {legal},"
         return None
 
 

@@ -1,5 +1,6 @@
 """Semantic validation of a study file against its model and its design."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from math import pi
@@ -141,7 +142,7 @@ def _output_faults(
     """Yield a fault if an output does not exist, or is a category although a number is required."""
     if not model.outputs:  # undeclared before rows have run
         return
-    whole = name.partition("[")[0]
+    whole = re.split(r"\[|\s", name.strip())[0]  # "life[depth=1e-4]", "life at 100 um"
     if name != whole and whole in model.outputs:
         dims = [dim for dim in model.outputs[whole].dims if f"{dim}s" in model.setting_names]
         place = "".join(f"; for one {dim} alone, give no other in '{dim}s'" for dim in dims)
@@ -154,7 +155,7 @@ def _output_faults(
         optional = [setting for setting in lists if model.setting(setting).optional]
         along = {f"{dim}s" for dim in model.outputs[name].dims}
         optional = [setting for setting in optional if setting in along] or optional
-        yield InputFault(path, f"it needs {choices(optional)} in [settings]", value)
+        yield InputFault(path, f"requires {choices(optional)} in [settings]", value)
     elif no_number and model.outputs[name].is_category:
         yield InputFault(path, f"is a category: {no_number}", value)
 

@@ -205,7 +205,7 @@ class DesignTable(_Table):
         default_factory=lambda: 0,  # all rows of an imported file; required for other designs
         ge=1,
         le=MAX_SAMPLES,
-        description="base size of each replicate; see 'uq check' for rows",
+        description="points drawn in each replicate; see 'uq check' for the rows made of them",
     )
     replicates: int = Field(
         1,
@@ -310,7 +310,7 @@ class AnalysisTable(_Table):
         (0.05, 0.5, 0.95), description="probabilities, each between 0 and 1"
     )
     max_failed: float = Field(
-        0.1, ge=0, le=1, description="share of failed rows above which a run counts as failed"
+        0.1, ge=0, le=1, description="share of invalid rows above which a run counts as failed"
     )
     tolerance: Annotated[
         Tolerance | None,

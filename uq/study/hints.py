@@ -128,7 +128,7 @@ def _ends_of_samples(study: "Study") -> Iterator[str]:
             if rows < needed:
                 yield (
                     f"[analysis] {key}: {counted(rows, 'row')} will give no bound;"
-                    f" {needed} are needed if none fails"
+                    f" {needed} are needed if no row is invalid"
                 )
 
 

@@ -111,14 +111,7 @@ def in_units_of(model: Model, data: dict[str, Any]) -> dict[tuple[str, ...], str
     misfits: dict[tuple[str, ...], str] = {}
 
     def convert(entries: Any, key: Any, units: str, path: tuple[str, ...]) -> None:
-        if isinstance(values := entries[key], list):
-            for place in range(len(values)):
-                convert(values, place, units, (*path, str(place)))
-            return
-        try:
-            entries[key] = _in_unit(values, path[2 if path[0] == "uncertain" else 1], units)
-        except InputError as fault:
-            misfits[path] = str(fault)
+        misfits.update(_converted(entries, key, units, path))
 
     def table(name: str) -> dict[str, Any]:
         return entries if isinstance(entries := data.get(name), dict) else {}
@@ -126,14 +119,7 @@ def in_units_of(model: Model, data: dict[str, Any]) -> dict[tuple[str, ...], str
     for name in {*table("fixed")} & {*model.parameter_names}:
         convert(table("fixed"), name, model.parameter(name).unit, ("fixed", name))
     for name in {*table("uncertain")} & {*model.parameter_names}:
-        entry = table("uncertain")[name]
-        if not isinstance(entry, dict):
-            continue
-        law = LAWS.get(str(entry.get("distribution")))
-        for key in [key for key in entry if key not in _PLAIN]:
-            is_pure = "times" in entry or (law is not None and key in law.pure)
-            units = "1" if is_pure else model.parameter(name).unit
-            convert(entry, key, units, ("uncertain", name, key))
+        misfits |= law_in_units(table("uncertain")[name], name, model.parameter(name).unit)
     kinds = setting_types(model)
     for name in {*table("settings")} & {*kinds}:
         declared = model.setting(name)
@@ -144,6 +130,41 @@ def in_units_of(model: Model, data: dict[str, Any]) -> dict[tuple[str, ...], str
             for path in [path for path in misfits if path[:2] == ("settings", name)]:
                 del misfits[path]
     return misfits
+
+
+def law_in_units(entry: Any, name: str, unit: str) -> dict[tuple[str, ...], str]:
+    """Convert the quantities in one table of [uncertain], in place; see `in_units_of`.
+
+    Parameters
+    ----------
+    entry : object
+        As parsed; anything but a table stays as it is.
+    name : str
+        Parameter.
+    unit : str
+        CF unit of the parameter.
+    """
+    misfits: dict[tuple[str, ...], str] = {}
+    if isinstance(entry, dict):
+        law = LAWS.get(str(entry.get("distribution")))
+        for key in [key for key in entry if key not in _PLAIN]:
+            is_pure = "times" in entry or (law is not None and key in law.pure)
+            misfits |= _converted(entry, key, "1" if is_pure else unit, ("uncertain", name, key))
+    return misfits
+
+
+def _converted(
+    entries: Any, key: Any, units: str, path: tuple[str, ...]
+) -> dict[tuple[str, ...], str]:
+    """Convert one entry, or each of a list, in place; return why its unit does not fit."""
+    if isinstance(values := entries[key], list):
+        lines = [_converted(values, i, units, (*path, str(i))) for i in range(len(values))]
+        return {place: why for line in lines for place, why in line.items()}
+    try:
+        entries[key] = _in_unit(values, path[2 if path[0] == "uncertain" else 1], units)
+    except InputError as fault:
+        return {path: str(fault)}
+    return {}
 
 
 def _in_unit(value: Any, name: str, units: str) -> Any:

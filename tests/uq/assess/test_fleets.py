@@ -87,6 +87,15 @@ def test_points_over_what_is_shared_state_what_they_assume():
     assert not any("assume" in note for note in fleet.notes)
 
 
+def test_a_narrow_interval_comes_with_what_it_covers():
+    for shares in (True, False):
+        law = lognormal(0.5, 1e-9, level="shared" if shares else "own")
+        fleet = fleet_of(Result(fleet_result(units=3, rate=law)), 3, [5e5])
+        (note,) = (note for note in fleet.notes if "cover sampling only" in note)
+        assert ("what all units of a fleet share" in note) == shares
+        assert ("level = 'shared'" in note) == (not shares)
+
+
 def test_a_fleet_of_one_is_a_unit():
     ds = fleet_result()
     fleet = fleet_of(Result(ds), 1, [5e5])
@@ -137,7 +146,7 @@ def test_failed_rows_are_taken_at_best_and_at_worst():
     lost = ds.assign(status=ds["status"].copy(data=status), life=ds["life"].copy(data=life))
     fleet = fleet_of(Result(lost), 4, [5e5])
     assert fleet.samples == 90
-    assert any("10 of 400 rows failed" in note for note in fleet.notes)
+    assert any("10 of 400 rows are invalid" in note for note in fleet.notes)
     failed, kept = fleet.by[5e5]
     whole = fleet_of(Result(ds), 4, [5e5]).by[5e5]
     for number, truth in zip((failed, kept), whole, strict=True):

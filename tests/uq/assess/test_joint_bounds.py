@@ -124,12 +124,12 @@ def test_bounds_that_lack_rows_are_not_settled():
     assert joint == {"lower": None, "upper": None, "rows_needed": None}
     assert np.isnan(uq.summary(failing)["joint_rows_needed"].item())
     findings = Findings(Result(failing))
-    sentence = "oo many rows failed for the requested joint bounds"
+    sentence = "oo many rows are invalid for the requested joint bounds"
     assert f"T{sentence}. More rows would not help." in verdict(findings)
     advice = {remedy.rule: remedy.text for remedy in conclude(findings).advice}
     assert f"t{sentence}" in advice["failed"] and "joint" not in advice.get("rows", "")
     why = quantities(findings)[0].tolerance_bound.basis
-    assert "of the rows failed and count as beyond it" in why
+    assert "of the rows are invalid and count as beyond it" in why
 
 
 @pytest.mark.parametrize(

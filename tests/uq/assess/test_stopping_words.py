@@ -77,7 +77,7 @@ def test_undefined_rows_are_not_said_to_have_failed(tmp_path):
     ds = runner.run(study_of(given, "sample_models:PAIRED"), tmp_path / "out.nc", workers=0)
     x1, x2 = ds["x1"].values, ds["x2"].values
     failed, undefined = (x2 > 0.9).sum(), ((x2 <= 0.9) & (x1 < 0.2)).sum()
-    words = f"(without {failed} failed rows and {undefined} undefined rows)"
+    words = f"(without {failed} invalid rows and {undefined} undefined rows)"
     assert words in summarised(ds)["notes"][0]
 
 

@@ -28,6 +28,7 @@ def test_the_axes_say_what_has_happened(locking):
     assert "Probability that the motors have locked" in words(figure)
     (other,) = figure.axes[0].child_axes
     assert other.get_ylabel() == "Probability that it has\nnot happened yet"
+    assert "1, 10, 50 % quantiles" in words(figure) and "B10" not in words(figure)
 
 
 def test_the_latest_time_is_promised(locking):

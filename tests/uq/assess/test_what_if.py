@@ -168,7 +168,7 @@ def test_a_refusal_names_the_samples_that_it_takes(result):
 
 def test_where_no_row_can_be_is_refused(result):
     bounded = computed(study({"z": {"distribution": "uniform", "lower": 0.0, "upper": 1.0}}))
-    with pytest.raises(InputError, match=r"uncertain.z: has 0\.3.* there are no rows"):
+    with pytest.raises(InputError, match=r"uncertain.z: 33\.2 % of its .* there are no rows"):
         what_if(bounded, {"uncertain.z.upper": 1.5})
     with pytest.raises(InputError, match="'x' is not uncertain in this study"):
         what_if(result, {"uncertain.x.sd": 1.0})
@@ -180,11 +180,15 @@ def test_where_no_row_can_be_is_refused(result):
         ("uncertain.sd", "'uncertain.z.sd'"),
         ("distribution", "'uncertain.a.distribution' or 'uncertain.z.distribution'"),
         ("a.sigm", "'uncertain.a.sigma'"),
+        ("z", "'uncertain.z.mean' or 'uncertain.z.sd'"),
+        ("uncertain.z", "'uncertain.z.mean' or 'uncertain.z.sd'"),
     ):
         with pytest.raises(InputError, match=f"did you mean {meant}"):
             what_if(result, {entry: 1.0})
     with pytest.raises(InputError, match="'fixed.c' cannot be changed"):
         what_if(result, {"fixed.c": 1.0})
+    with pytest.raises(InputError, match="'settings.depths' .* change it in a study, and run that"):
+        what_if(result, {"settings.depths": [1.0]})
     with pytest.raises(InputError, match="times and level of 'a' cannot be changed"):
         what_if(result, {"uncertain.a.times": "z"})
     with pytest.raises(InputError, match="^what if: 'equals' cannot be changed$"):
@@ -200,6 +204,48 @@ def test_where_no_row_can_be_is_refused(result):
         what_if(screened, {"uncertain.z.sd": 0.9})
 
 
+DEPTH = {"distribution": "lognormal", "median": 2.5e-4, "sigma": 0.1}
+RATE = {"distribution": "lognormal", "median": 7e-10, "sigma": 0.4}
+
+
+def worn(rate):
+    tables = {
+        "study": {"name": "worn", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 200, "seed": 3},
+        "uncertain": {"depth": DEPTH, "rate": rate},
+    }
+    return computed(study_of(tables))
+
+
+def test_numbers_may_have_units_as_in_a_study():
+    rows = worn(RATE)
+    texts = ["uncertain.depth.median=260 um", "uncertain.rate.sigma = 35 %"]
+    changes = read_changes([*texts, "uncertain.depth.distribution=lognormal"])
+    assert [*changes.values()] == ["260 um", "35 %", "lognormal"]
+    del changes["uncertain.depth.distribution"]
+    plain = {"uncertain.depth.median": 2.6e-4, "uncertain.rate.sigma": 0.35}
+    assert what_if(rows, changes).equals(what_if(rows, plain))
+    with pytest.raises(InputError) as refused:
+        what_if(rows, read_changes(["uncertain.depth.median = 260 kg"]))
+    wrong = "what if: uncertain.depth.median: the unit 'kg' does not fit 'median'"
+    assert str(refused.value).startswith(wrong) and "\n" not in str(refused.value)
+
+
+def test_measured_values_can_only_be_truncated():
+    values = np.random.default_rng(1).lognormal(np.log(7e-10), 0.4, 50)
+    rows = worn({"distribution": "empirical", "values": values.tolist()})
+    life = what_if(rows, {"uncertain.rate.truncate": [5e-10, 1e-9]}).loc["life"]
+    assert life["mean"] > 0
+    for changes in (
+        {"uncertain.rate.median": 1e-9},
+        {"uncertain.rate.file": "other.csv"},
+        {"uncertain.rate": {"distribution": "empirical", "file": "x.csv", "column": "rate"}},
+        {"uncertain.rate": RATE},
+    ):
+        with pytest.raises(InputError, match=r"^what if: 'rate' has measured values.*truncate"):
+            what_if(rows, changes)
+
+
 def test_a_scale_may_leave_the_values_of_the_rows():
     """It is integrated; outputs that depend on it otherwise are left out."""
     rows = computed(
@@ -211,7 +257,7 @@ def test_a_scale_may_leave_the_values_of_the_rows():
     below = ((least - 1) / 3).clip(0, 1).mean()
     assert life["thresholds"]["0.8"]["below"]["value"] == pytest.approx(below)
     assert life["mean"] is None and "there are no rows" in life["reasons"]["mean"]
-    assert any(note.startswith("y: uncertain.a: has 0.67") for note in changed.summary.notes)
+    assert any(note.startswith("y: uncertain.a: 6") for note in changed.summary.notes)
 
 
 def test_a_law_that_is_replaced_keeps_its_level():

@@ -110,7 +110,7 @@ def test_without_a_terminal_progress_is_plain_lines(capsys, monkeypatch):
     first, *lines = capsys.readouterr().err.splitlines()
     assert first == "dask dashboard: http://there/status"
     assert [line.partition(" rows")[0] for line in lines] == ["1 of 4", "4 of 4"]
-    assert lines[-1].endswith("less than 1 min left, 1 failed; raised 1")
+    assert lines[-1].endswith("less than 1 min left, 1 invalid; raised 1")
 
 
 def test_quiet_is_quiet(capsys, monkeypatch):
@@ -132,7 +132,7 @@ def test_plain_lines_stay_short(capsys, monkeypatch):
     assert max(map(len, lines)) <= 120
     assert lines[1].endswith("; non-finite 123456789, raised 1234567")
     assert lines[2].endswith("; median a_life_with_a_name[depth=2]: 31.7 years")
-    assert lines[3].endswith("failed; median life: 1 s; slow 25%, fast 75%")
+    assert lines[3].endswith("invalid; median life: 1 s; slow 25%, fast 75%")
 
 
 def test_a_model_that_compiles_is_reported_once(capsys):
@@ -144,17 +144,17 @@ def test_a_model_that_compiles_is_reported_once(capsys):
 
 def test_progress_is_a_sentence():
     assert progress.sentence(Progress(100, 400, 3), 50.0) == (
-        "100 of 400 rows, 50 rows/s, less than 1 min left, 3 failed"
+        "100 of 400 rows, 50 rows/s, less than 1 min left, 3 invalid"
     )
-    assert progress.sentence(Progress(1, 3601, 0), 1.0).endswith("about 1 h left, 0 failed")
+    assert progress.sentence(Progress(1, 3601, 0), 1.0).endswith("about 1 h left, 0 invalid")
     under_way = Progress(3, 40, 0, under_way=2)
-    assert progress.sentence(under_way, 0.0) == "3 of 40 rows, 2 under way, 0 failed"
+    assert progress.sentence(under_way, 0.0) == "3 of 40 rows, 2 under way, 0 invalid"
 
 
 def test_the_time_that_a_model_compiles_is_not_taken_for_that_of_its_rows():
     pace = progress.Pace()
     assert pace(Progress(10, 400, 0), 60.0) == 0.0
-    assert progress.sentence(Progress(10, 400, 0), 0.0) == "10 of 400 rows, 0 failed"
+    assert progress.sentence(Progress(10, 400, 0), 0.0) == "10 of 400 rows, 0 invalid"
     assert pace(Progress(110, 400, 0), 62.0) == pytest.approx(50.0)
 
 

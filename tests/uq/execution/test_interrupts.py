@@ -235,7 +235,7 @@ def test_a_terminal_shows_progress_and_gets_its_cursor_back(started):
     assert shown.count(hidden) == shown.count(visible) == 1
     assert shown.rindex(visible) > shown.rindex(hidden)
     assert b"interrupted after " in shown.rpartition(visible)[2]
-    assert b" of 10000 rows, " in shown and b" left, 0 failed" in shown
+    assert b" of 10000 rows, " in shown and b" left, 0 invalid" in shown
 
 
 def test_what_a_cluster_leaves_unawaited_says_nothing(caplog):

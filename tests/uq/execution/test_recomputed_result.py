@@ -66,11 +66,11 @@ def test_changed_settings_and_inputs_give_what_a_run_would(rods):
 
 def test_a_what_if_on_settings_prints_both_and_keeps_the_new_result(rods, uq, monkeypatch):
     monkeypatch.chdir(rods.parent)
-    ended = uq("what-if", "rods.nc", "--set", "settings.scar='dimple'", "-o", "dimple.nc")
+    ended = uq("what-if", "rods.nc", "--set", "settings.scar=flat-bar", "-o", "flat.nc")
     assert ended.code == 0, ended.err
     assert "computed again" in ended.out and "first_time_to_depth" in ended.out
-    compared = uq("compare", "rods.nc", "dimple.nc")
-    assert compared.code == 0 and "B  dimple.nc  dimple (3 rows)" in compared.out
+    compared = uq("compare", "rods.nc", "flat.nc")
+    assert compared.code == 0 and "B  flat.nc  flat (3 rows)" in compared.out
 
 
 @pytest.mark.parametrize(

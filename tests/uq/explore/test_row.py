@@ -206,7 +206,7 @@ def test_what_differs_is_named_with_its_reason(uq, write_study):
     assert ended.code == 1 and "Computed again: differs in y. Reason: " in ended.out
     for name, value, reason in (
         ("numpy", "0.9", "it was computed with another numpy"),
-        ("code", "0", "other code of the model computed it"),
+        ("code", "0", "another version of the code of the model computed it"),
         ("study_identity", "0", "another model computed it (the nominal values"),
     ):
         with netCDF4.Dataset("out.nc", "a") as file:

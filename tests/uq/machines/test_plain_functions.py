@@ -210,7 +210,7 @@ def test_a_new_machine_passes_as_it_is_written(uq, folder):
 
 
 @pytest.mark.parametrize(
-    ("names", "first"), [("", "8 runs, 0 failed"), ('("test pad", "test pads")', "8 test pads, 0")]
+    ("names", "first"), [("", "8 runs, 0 invalid"), ('("test pad", "test pads")', "8 test pads, 0")]
 )
 def test_a_card_calls_rows_what_the_machine_calls_them(uq, write_function, names, first):
     options = f"(row_name={names})" if names else ""

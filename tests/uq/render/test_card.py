@@ -17,6 +17,7 @@ from uq.assess.answer.wording import called_together
 from uq.render.card import SHORT, WIDTH, card, cause_columns, lines_of
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
+from uq.text.numbers import counted
 
 STUDIES = Path(__file__).parents[3] / "studies"
 QUICK = ("exponential-wear", "ishigami")
@@ -108,7 +109,8 @@ def test_a_card_fits_on_a_screen_whatever_the_result(name, ds):
     shown = card(ds)
     lines = str(shown).splitlines()
     assert len(lines) <= 24 and max(map(len, lines)) <= WIDTH, name
-    assert f"{int(Result(ds).failed.sum())} failed" in lines[0]
+    assert f", {counted(int(Result(ds).failed.sum()), 'invalid row')} " in lines[0]
+    assert "failed" not in str(shown).replace("--failed", "")  # of rods, "fail within 24 h"
     assert not re.search(r"\bnan\b|\binf\b|None", str(shown)), str(shown)
     json.dumps(shown.card.json, allow_nan=False)
 
@@ -139,9 +141,9 @@ def test_rows_are_called_what_the_model_calls_them():
         "uncertain": {"x1": {"distribution": "uniform", "lower": 0.0, "upper": 1.0}},
     }
     ds = computed(study_of(tables))
-    assert str(card(ds)).splitlines()[0].startswith("pumps   1 run, 0 failed")
+    assert str(card(ds)).splitlines()[0].startswith("pumps   1 run, 0 invalid")
     named = card(ds.assign_attrs(row_name="pump/pumps"))
-    assert "1 pump, 0 failed" in str(named)
+    assert "1 pump, 0 invalid" in str(named)
 
 
 @pytest.mark.parametrize("index", ["pawn", "delta", "KS", "hsic", "mu_star", "shapley"])
@@ -154,7 +156,15 @@ def test_an_index_is_described_in_words_and_its_range_where_it_has_one(shipped, 
 
 def test_a_short_card_says_which_interval_it_shows(shipped):
     lines = str(card(shipped)).splitlines()
-    assert len(lines) <= SHORT and sum("(95 % interval)" in line for line in lines) == 1
+    assert len(lines) <= SHORT and sum("(95 % interval)" in line for line in lines) == 2
+
+
+def test_numbers_under_half_the_scatter_say_which_interval_they_have(shipped):
+    shown = card(shipped)
+    header, _ = cause_columns(shown.card)
+    first = next(cause.tightened for cause in shown.card.causes if cause.tightened)
+    assert first.after.has_interval and header[3][1].endswith("(95 % interval)")
+    assert header[3][1].replace("\u00a0", " ") in str(shown)
 
 
 def test_chance_comes_with_the_share_that_it_explains():
@@ -344,5 +354,7 @@ def test_a_law_of_few_values_and_a_fixed_value_without_source_are_pointed_out():
     shown = card(computed(study_of(tables)))
     assert f"! {clause}" in str(shown) and clause in shown.card.json["checks"]
     tables["uncertain"]["rate"]["values"] = [1e-9 * (1 + 0.01 * i) for i in range(100)]
+    tables["fixed"]["depth"] = "250 um"  # nominal: it has the source of that
+    assert card(computed(study_of(tables))).card.sources == ""
     del tables["fixed"]
     assert card(computed(study_of(tables))).card.sources == ""

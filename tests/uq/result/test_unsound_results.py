@@ -40,7 +40,7 @@ def with_attribute(ds, name, **attrs):
 
 IMPOSSIBLE = {
     "a negative life": (lambda ds: with_value(ds, "life", -1.0), "a life cannot be negative"),
-    "no life": (lambda ds: with_value(ds, "life", np.nan), "'life' is nan, in a row"),
+    "no life": (lambda ds: with_value(ds, "life", np.nan), "'life' is nan, in a valid row"),
     "no input": (lambda ds: with_value(ds, "rate", np.nan), "'rate' is not within"),
     "an input beyond its bounds": (lambda ds: with_value(ds, "rate", -1e-9), "'rate' is not"),
     "an infinite input": (lambda ds: with_value(ds, "rate", np.inf), "'rate' is not within"),

@@ -191,6 +191,8 @@ def test_an_element_in_place_of_an_output_is_answered_with_the_output_and_how_to
     [analysis]
     outputs = ["first_time_to_depth[depth=0.00025]"]
     """
-    (line,) = lines(text=text)
-    assert "name the output without its element: 'first_time_to_depth'" in line
-    assert line.endswith("for one depth alone, give no other in 'depths'")
+    words = ("first_time_to_depth at 250 um", "first_time_to_depth[depth=250 um]")
+    for spelling in ("first_time_to_depth[depth=0.00025]", *words):
+        (line,) = lines(text=text.replace("first_time_to_depth[depth=0.00025]", spelling))
+        assert "name the output without its element: 'first_time_to_depth'" in line
+        assert line.endswith("for one depth alone, give no other in 'depths'")

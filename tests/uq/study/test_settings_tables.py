@@ -72,7 +72,7 @@ def test_settings_that_are_no_tables_or_rows_are_refused(tmp_path):
 
 def test_an_output_at_instants_names_the_setting_that_it_needs():
     (line,) = lines('[analysis]\noutputs = ["worn_depth"]')
-    assert line.endswith("it needs instants in [settings]")
+    assert line.endswith("requires instants in [settings]")
 
 
 def test_the_schema_has_tables_and_numbers_of_any_name():

@@ -177,7 +177,7 @@ def test_a_wrong_size_from_the_command_line_names_the_option(method):
     with pytest.raises(InputError) as caught:
         study.with_samples(1000)
     assert caught.value.lines == (
-        f"samples = 1000: must be a power of two; the next is 1024 for '{method}'",
+        f"samples = 1000: must be a power of two, 512 or 1024, for '{method}'",
     )
     with pytest.raises(InputError, match="^samples = 0: must be between 1 and"):
         study.with_samples(0)

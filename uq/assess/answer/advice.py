@@ -81,12 +81,12 @@ def _mend(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     result = findings.result
     lost, rows = int(result.failed.sum()), len(result)
     most = result.analysis.max_failed
-    why = [f"the study allows {100 * most:g} % to fail"] * (rows > 0 and lost > most * rows)
+    why = [f"the study allows {100 * most:g} % invalid rows"] * (rows > 0 and lost > most * rows)
     why += [clause for clause, factor in bounds_unsettled(findings, answered) if isinf(factor)]
     if why:
         yield Advice(
             "failed",
-            f"Fix the {counted(lost, 'failed row')} first: {why[0]};"
+            f"Fix the {counted(lost, 'invalid row')} first: {why[0]};"
             f" 'uq rerun {result.file} --failed{result.model_option}' recomputes them, with other"
             " settings if necessary.",
         )

@@ -163,7 +163,7 @@ class Answer:
     def rows_sentence(self) -> str:
         """Sentence on the number of computed rows."""
         if self.failed:
-            return f"{grouped(self.failed)} of {grouped(self.rows)} rows failed."
+            return f"{grouped(self.failed)} of {grouped(self.rows)} rows are invalid."
         return (
             f"All {grouped(self.rows)} rows were computed." if self.rows else "There are no rows."
         )

@@ -195,7 +195,7 @@ def _why_no_bound(
         (statistic.rows_needed for statistic in both if statistic and statistic.rows_needed), None
     )
     if needed == inf:
-        return f"{percent(element.failed.mean())} of the rows failed and count as beyond it"
+        return f"{percent(element.failed.mean())} of the rows are invalid and count as beyond it"
     if needed:
         return f"{needed:.0f} rows are required"
     if any(not isnan(bound) for bound in bounds):

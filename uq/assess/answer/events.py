@@ -115,7 +115,7 @@ class Event:
         text = f"{share_text(self.share)} {self.predicate}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_range(self.failed.low, self.failed.high)
-            text += f"; with failed rows at best and worst, {ends}"
+            text += f"; with invalid rows at best and worst, {ends}"
         if self.undefined > 0:
             text += f"; {percent(self.undefined)} are undefined"
         return f"{text}."

@@ -75,7 +75,7 @@ def bounds_unsettled(findings: Findings, answered: Sequence[Quantity]) -> Iterat
         if needed:
             asked = f"the requested {words}"
             clause = f"{asked} require {needed:.0f} rows" if isfinite(needed) else ""
-            yield clause or f"too many rows failed for {asked}", needed / max(rows, 1)
+            yield clause or f"too many rows are invalid for {asked}", needed / max(rows, 1)
 
 
 def unsettled_share(event: Event) -> Iterator[Shortfall]:
@@ -89,7 +89,7 @@ def unsettled_share(event: Event) -> Iterator[Shortfall]:
     goal = max(SHARE * min(share.value, 1 - share.value), POINT)
     if half > goal:
         points = percent(half).removesuffix(" %")
-        clause = f"the share that {event.clause} is uncertain by ±{points} percentage points"
+        clause = f"the share that {event.clause} is uncertain by ±{points} percentage points (95 %)"
         yield clause, (half / goal) ** 2
 
 

@@ -5,6 +5,8 @@ from collections.abc import Sequence, Sized
 from math import ceil, floor, isfinite, log10
 from typing import NamedTuple
 
+import numpy as np
+
 from uq.assess.fact import Fact
 from uq.assess.targets import split_name
 from uq.result.element import Element
@@ -88,8 +90,17 @@ def few_values(result: Result) -> dict[str, int]:
 
 
 def without_source(result: Result) -> list[str]:
-    """Return the parameters whose values in [fixed] replace the nominal ones, without a source."""
-    return [name for name in result.study.fixed if name in result.dataset.variables]
+    """Return the parameters whose values in [fixed] replace the nominal ones, without a source.
+
+    A value equal to the nominal one has the source of that.
+    """
+    ds = result.dataset
+    return [
+        name
+        for name in result.study.fixed
+        if name in ds.variables
+        and not np.array_equal(ds[name].attrs.get("nominal", ()), ds[name].values)
+    ]
 
 
 class DisplayUnit(NamedTuple):

@@ -29,7 +29,8 @@ def counts(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield the numbers of rows by what they lack, and the share that never ends, if any does."""
     for name in ("never", "censored", "undefined", "failed"):
         number = float(getattr(element, name).sum())
-        yield Statistic((name,), name, Estimate(number), "rows", COUNT)
+        label = "invalid" if name == "failed" else name
+        yield Statistic((name,), label, Estimate(number), "rows", COUNT)
     if element.is_lifetime and element.never.any():
         sample = context.sample(element)
         yield Statistic(

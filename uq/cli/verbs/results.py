@@ -45,7 +45,7 @@ def extend(
 
 def rerun(
     result: given.ResultFile,
-    failed: Annotated[bool, typer.Option("--failed", help="The rows that failed.")] = False,
+    failed: Annotated[bool, typer.Option("--failed", help="The invalid rows.")] = False,
     setting: given.Settings = None,
     workers: given.Workers = None,
     scheduler: given.Scheduler = None,
@@ -54,13 +54,13 @@ def rerun(
     mixed: given.Mixed = False,
     quiet: given.Quiet = False,
 ) -> int:
-    """Recompute the failed rows of a result."""
+    """Recompute the invalid rows of a result."""
     from uq.cli.run import amended
     from uq.cli.simulate import literal
     from uq.execution.amending import rerun_failed
 
     if not failed:
-        raise InputError("uq rerun: give --failed, the rows to compute again")
+        raise InputError("uq rerun: add --failed: it recomputes the invalid rows")
     options = RunOptions(workers, scheduler, row_limit=row_limit, mixed=mixed)
     action = partial(rerun_failed, result, dict(map(literal, setting or [])), model)
     return amended(result, model, quiet, options, action)

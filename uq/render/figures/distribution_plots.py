@@ -237,7 +237,8 @@ def lifetime(
         marked |= _mark(panel, outputs.get(element.name), unit, colour)
     if marked:
         b_lives = ", ".join(name for name in B_LIVES if name in marked)
-        next(line for line in panel.lines if line.get_marker() == "o").set_label(b_lives)
+        words = f"{b_lives.replace('B', '')} % quantiles" if success else b_lives
+        next(line for line in panel.lines if line.get_marker() == "o").set_label(words)
     if label_two_curves(panel, curves, texts, colours, [name.at for name in names]):
         for drawn in panel.lines:
             if drawn.get_label() in texts:

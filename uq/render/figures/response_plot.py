@@ -195,7 +195,7 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     if len(texts) > len(COLOURS):
         entries.append((_OTHERS, f"{len(texts) - len(COLOURS)} others, {percent(rare)}"))
     if (attractor.values < 0).any():
-        entries.append((_FAILED, f"failed, {percent(float((attractor < 0).mean()))}"))
+        entries.append((_FAILED, f"invalid, {percent(float((attractor < 0).mean()))}"))
     for colour, text in entries:
         axes.plot([], [], "s", color=colour, mec="black", mew=0.4, label=text)
     return finish(axes)

@@ -139,10 +139,10 @@ def label(result: Result, element: Element) -> str:
 def row_counts(result: Result, chosen: Sequence[Element]) -> str:
     """Return the number of rows, and the numbers of failed rows and of rows without a value."""
     counts = [result.counted_rows(len(chosen[0].values))]
-    for state in ("failed", "undefined", "censored"):
+    for state, word in (("failed", "invalid"), ("undefined",) * 2, ("censored",) * 2):
         most = max(int(getattr(element, state).sum()) for element in chosen)
         if most:
-            counts.append(f"{'up to ' if len(chosen) > 1 else ''}{grouped(most)} {state}")
+            counts.append(f"{'up to ' if len(chosen) > 1 else ''}{grouped(most)} {word}")
     if chosen[0].weights is not None:
         counts.append("weighted by inspections")
     return ", ".join(counts)

@@ -146,7 +146,7 @@ def cell(statistic: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     worst = failed_bounds_text(statistic.failed, per)
     small = (
         statistic.interval(per).replace(" to ", " to\u00a0"),  # breaks in two, not three
-        f"with failed rows {worst}" if worst else "",
+        f"with invalid rows {worst}" if worst else "",
         statistic.more,
     )
     last = inf if estimate.value == inf and statistic.otherwise is None else None

@@ -12,7 +12,7 @@ from uq.assess.card_numbers import Headline
 from uq.render.card import cause_columns, interval_of, label_of, number_of
 from uq.render.html.cells import SHARE, Cell, HtmlTable
 from uq.text.keys import key_of
-from uq.text.numbers import capitalized, counted, grouped, printed
+from uq.text.numbers import capitalized, counted, printed
 
 MOST_TILES = 4
 
@@ -66,7 +66,7 @@ def first_screen(card: Card, answer: Answer, figure: Markup) -> dict[str, Any]:
         "figure": figure,
         "causes": _causes(card, answer),
         "rows": counted(card.rows, *card.row_name),
-        "failed": grouped(card.failed),
+        "invalid": counted(card.failed, "invalid row"),
     }
 
 
@@ -94,9 +94,17 @@ def _causes(card: Card, answer: Answer) -> HtmlTable | None:
         for i, (cause, texts) in enumerate(zip(card.causes, lines, strict=True))
     ]
     filled = [i for i in range(len(header)) if any(row[i].text for row in rows)]
-    titles = [" ".join(filter(None, header[i])) for i in filled]
+    if any(row[1].more for row in rows) and card.share_of:
+        header[1] = (header[1][0], f"{header[1][1]} (95 % interval)")
+    titles = [_joined(*header[i]) for i in filled]
     shown = [tuple(row[i] for i in filled) for row in rows]
     return HtmlTable("Causes", ("input", *titles[1:]), shown)
+
+
+def _joined(upper: str, lower: str) -> str:
+    """Return the two lines of a header on one line."""
+    comma = "," * lower.startswith("now ")
+    return f"{upper}{comma} {lower}".strip()
 
 
 def _place(answer: Answer) -> tuple[str, ...]:

@@ -5,7 +5,13 @@ from math import floor, log10
 
 import numpy as np
 
-from uq.assess.answer.wording import DisplayUnit, mark_of, source_of, unit_of_input
+from uq.assess.answer.wording import (
+    DisplayUnit,
+    mark_of,
+    source_of,
+    unit_of_input,
+    without_source,
+)
 from uq.assess.sampled_laws import PROBABILITIES, compare, laws_and_values, weights_of_samples
 from uq.contract import Floats
 from uq.render.figures.words import meaning_of, symbol_of, unbroken
@@ -52,7 +58,7 @@ def fixed_inputs(result: Result) -> HtmlTable | None:
         for name in result.dataset.data_vars
         if result.dataset[name].attrs.get("role") == "fixed"
     ]
-    by_study = result.study.fixed
+    by_study = without_source(result)
     lines = [_fixed(result, str(name), name in by_study) for name in fixed]
     header = ("input", "value", "known", "source")
     return HtmlTable("Fixed inputs", header, lines) if lines else None

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from uq.assess.findings import Findings
 from uq.plots import FIGURES
 from uq.render.figures.catalogue import drawables
-from uq.render.figures.figure import WIDTH, lay_out, styled, ticks_placed_once
+from uq.render.figures.figure import LIMIT, WIDTH, lay_out, styled, ticks_placed_once
 from uq.render.html.indices import output_of
 from uq.text.literals import plain
 from uq.text.units import readable
@@ -80,11 +80,15 @@ HEAVIEST_SVG = 300_000
 _IMAGE = re.compile(r"data:image[^\"]*")
 _DOTS_PER_INCH = 144  # resolution of an image
 
-_INK = {"#000000": "currentColor", "fill: #ffffff": "fill: none"}
+_INK = {
+    "#000000": "currentColor",
+    "fill: #ffffff": "fill: none",
+    LIMIT.lower(): "var(--limit)",
+}
 
 
 def _in_ink(style: str) -> str:
-    """Return a style with black replaced by the page's text colour, and no white background."""
+    """Return a style with the page's colours of text and limits, and no white background."""
     for colour, shown in _INK.items():
         style = style.replace(colour, shown)
     return style

@@ -300,7 +300,7 @@ def _bounds_then(
 
 def _then(bound: ToleranceBound, then: float, studied: float) -> str:
     if not isfinite(then) or (bound.is_life and then <= 0):
-        return "No bound can be estimated: too many rows failed, or too few carry weight."
+        return "No bound can be estimated: too many rows are invalid, or too few carry weight."
     return plain(printed(bound.moved_end(then, studied)))
 
 

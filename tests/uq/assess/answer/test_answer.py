@@ -147,9 +147,14 @@ def test_where_every_row_failed_only_that_is_said():
     ds = linear(samples=20)
     ds["y"][:] = np.nan
     conclusions = answer(with_status(ds, range(20), Status.RAISED))
-    assert conclusions.quantities == () and conclusions.rows_sentence == "20 of 20 rows failed."
+    assert (
+        conclusions.quantities == () and conclusions.rows_sentence == "20 of 20 rows are invalid."
+    )
     assert [advice.rule for advice in conclusions.advice] == ["failed"]
-    assert "20 of 20 rows failed." in repr(conclusions) and "20 of 20" in conclusions._repr_html_()
+    assert (
+        "20 of 20 rows are invalid." in repr(conclusions)
+        and "20 of 20" in conclusions._repr_html_()
+    )
 
 
 def test_nothing_is_said_of_an_event_without_rows():

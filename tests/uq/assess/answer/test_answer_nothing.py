@@ -68,7 +68,7 @@ def test_every_reader_gets_an_answer(case):
 
 def test_where_all_rows_fail_nothing_else_is_advised():
     conclusions = answer(all_failed())
-    assert conclusions.lines[0] == "200 of 200 rows failed."
+    assert conclusions.lines[0] == "200 of 200 rows are invalid."
     assert [advice.rule for advice in conclusions.advice] == [
         "failed"
     ] and not conclusions.enough.sentence

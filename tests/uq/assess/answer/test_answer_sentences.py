@@ -134,7 +134,8 @@ def test_failed_rows_widen_a_probability():
     ds["y"][:10] = np.nan
     (event,) = answer(asking(ds, outputs=["y"], thresholds={"y": 5.0})).lead.events
     *_, low, high = numbers(
-        r"# % \(# to # %\) exceed 5; with failed rows at best and worst, # to # %\.", event.sentence
+        r"# % \(# to # %\) exceed 5; with invalid rows at best and worst, # to # %\.",
+        event.sentence,
     )
     assert [low, high] == pytest.approx([100 * event.failed.low, 100 * event.failed.high], abs=0.05)
     assert event.failed.low <= event.share.low and event.share.high <= event.failed.high

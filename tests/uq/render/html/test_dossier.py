@@ -100,7 +100,7 @@ def test_its_numbers_are_those_of_the_result(no_other_figures):
     assert values["from"] == pytest.approx(np.quantile(sound, 0.05), rel=0.02)
     assert values["to"] == pytest.approx(np.quantile(sound, 0.95), rel=0.02)
     assert (
-        "1 of 384 rows failed; the study allows 10 %."
+        "1 of 384 rows are invalid; the study allows 10 %."
         in items_by_chapter["propagation"]["Rows that could not be computed"].text[0]
     )
     keys = set(re.findall(r'data-trace="(.*?)"', dossier(Result(ds), "out.nc")))

@@ -129,7 +129,7 @@ def test_where_all_rows_failed_the_report_says_why(no_other_figures):
     ds = with_status(ds, slice(None), Status.RAISED)
     ds["status"].attrs["example_raised"] = "ValueError: no such thing"
     words = read(ds).plain_words
-    assert "20 of 20 rows failed." in words and "ValueError: no such thing" in words
+    assert "20 of 20 rows are invalid." in words and "ValueError: no such thing" in words
     assert "uq rerun OUT --failed --model FILE" in words  # which is not installed
 
 

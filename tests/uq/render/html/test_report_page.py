@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from uq.contract import Status
 from uq.plots import FIGURES
+from uq.render.figures.figure import LIMIT
 from uq.render.html.embedded_columns import indexed
 from uq.render.html.page import page, templates
 from uq.render.html.pictures import picture
@@ -42,8 +43,8 @@ def text():
     [
         "384, statistics from 128 independent ones",
         "2 replicates",
-        "Failed rows: 2 . They lack",
-        "fails if more than 5 % of its rows do",
+        "Invalid rows: 2 . They lack",
+        "fails if more than 5 % of its rows are invalid",
         "3 rows were recomputed with other settings",
         "Truncated; the attribute study of the result",
         "No effect in any row, hence no interval: x3, x4.",
@@ -87,6 +88,9 @@ def test_a_picture_has_the_colour_of_the_text_around_it():
     drawn = picture(figure, "a line").html
     assert "#000000" not in drawn and "#ffffff" not in drawn
     assert drawn.count("stroke: currentColor") > 5  # marks of ticks, too, which no rule reaches
+    figure.axes[0].axhline(0.5, color=LIMIT)  # legible on a dark page, too
+    drawn = picture(figure, "a limit").html
+    assert "stroke: var(--limit)" in drawn and LIMIT.lower() not in drawn
 
 
 def test_a_picture_is_described_to_who_cannot_see_it():

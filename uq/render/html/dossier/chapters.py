@@ -68,8 +68,8 @@ def propagation(findings: Findings, file: str) -> Iterator[Item]:
     yield Item(
         "Rows that could not be computed",
         text=[
-            f"{lost} of {summary.samples} rows failed; the study allows {most:g} %. They are left"
-            " out of every statistic, and tolerance bounds count them as the worst value."
+            f"{lost} of {summary.samples} rows are invalid; the study allows {most:g} %. They are"
+            " left out of every statistic, and tolerance bounds count them as the worst value."
         ],
         tables=[status_table(result, summary)],
     )

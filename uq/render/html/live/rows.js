@@ -5,7 +5,7 @@ function numbersOf(text, Numbers) {
 }
 
 const ENDED = 0, CENSORED = 1, NEVER = 2, UNDEFINED = 3, FAILED = 4;
-const STATES = ["", "censored", "never", "undefined", "failed"];
+const STATES = ["", "censored", "never", "undefined", "invalid"];
 
 class Column {
   constructor(plain) {
