@@ -17,6 +17,7 @@ SAMPLES = {  # of each replicate
     "mole-frequency": 16,
     "mole-outcome": 16,
     "mole-progression": 100,
+    "mole-ten-metres": 16,
     "vibrator-feed": 16,
     "vibrator-run-up": 4,
     "vibrator-startup": 32,
