@@ -18,6 +18,7 @@ SAMPLES = {  # of each replicate
     "mole-frequency": 16,
     "mole-outcome": 16,
     "mole-progression": 100,
+    "mole-ten-metres": 16,
     "tube-antivibration-bar": 2,
     "vibrator-feed": 16,
     "vibrator-run-up": 4,

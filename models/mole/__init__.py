@@ -11,6 +11,8 @@ Reading order; each part imports only those above it:
     exact         one mole at a time: the reference
     lanes         thirty-two moles at a time: the propagator of studies
     response      settled motion, its averages and its regime
+    drive         one mole in slow time: distances, and the temperature of its coil
+    drives        n moles in slow time, by settled responses along the way
     batch         from rows of a study to outputs
     trajectory    one time history
     explore       histories, sections and diagrams for notebooks

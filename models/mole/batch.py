@@ -5,22 +5,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models.mole.drives import drives, refused
 from models.mole.lanes.rows import OUT_OF_BUDGET, OUTCOME, SCALES
 from models.mole.lanes.strobe import REPEAT
 from models.mole.parameters import NO_IMPACT, ON_STOP, PERIODIC, Params, Rows, Settings
-from models.mole.response.following import follow_other, follow_repeating
 from models.mole.response.machines import Machines
-from models.mole.response.measured import BATCHES, Response
-from models.mole.response.settling import LATEST, settle, settle_late
+from models.mole.response.measured import Response
+from models.mole.response.settled import mean_rate, respond
 from models.mole.response.verdict import verdicts
-from models.numerics.batch_means import mean_and_error, ratio_error
+from models.numerics.batch_means import ratio_error
 from models.numerics.block_maxima import maximum_and_growth
 from uq.contract import Status
 
 
-def batch(
-    x: NDArray[np.float64], seed: NDArray[np.uint64], settings: Settings
-) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
+def batch(x: NDArray[np.float64], seed: NDArray[np.uint64], settings: Settings) -> Any:
     """Compute n moles.
 
     Parameters
@@ -36,34 +34,38 @@ def batch(
     outputs : dict of str to ndarray, shape (n,)
         Those of `models.mole.parameters.OUTPUTS`.
     status : ndarray of int8, shape (n,)
+    reasons : dict of int to str
+        Of rows refused; only if there are some.
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
     machines = Machines.started(p, settings, settings.transient + settings.duration)
-    response = Response.nothing(len(x))
-    repeating, other = settle(machines, settings.transient)
-    unstable = follow_repeating(machines, repeating, settings.duration, response)
-    other = np.concatenate([other, unstable])
-    follow_other(machines, other, settings.duration, response)
-    latest = 0.0 if settings.transient else LATEST
-    late = settle_late(machines, other, response, latest)
-    unstable = follow_repeating(machines, late, settings.duration, response)
-    follow_other(machines, unstable, settings.duration, response)
+    response = respond(machines, settings)
     outputs = _outputs(p, machines, response)
     lost = np.isnan(response.time)
     over = machines.record[:, OUTCOME] == OUT_OF_BUDGET
     status = np.where(lost, np.where(over, Status.OUT_OF_BUDGET, Status.NON_FINITE), Status.OK)
-    return outputs, status.astype(np.int8)
+    reasons = refused(p, settings)
+    if settings.distance or settings.temperature:
+        more, unfinished = drives(p, machines, response, settings)
+        outputs |= more
+        status = np.where(unfinished, Status.OUT_OF_BUDGET, status)
+    for i in reasons:
+        status[i] = Status.NON_FINITE
+        for values in outputs.values():
+            values[i] = np.nan if values.dtype.kind == "f" else -1 if values.dtype == np.int8 else 0
+    done = outputs, status.astype(np.int8)
+    return (*done, reasons) if reasons else done
 
 
 def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArray[Any]]:
     valid = np.isfinite(response.time)
     repeats = response.period > 0
-    progression, progression_error = _mean(response.progress, response.time, repeats)
-    impact, impact_error = _mean(response.impact, response.time, repeats)
-    electrical, electrical_error = _mean(response.electric, response.time, repeats)
-    exponent, exponent_error = _mean(response.growth, response.time, repeats)
+    progression, progression_error = mean_rate(response.progress, response.time, repeats)
+    impact, impact_error = mean_rate(response.impact, response.time, repeats)
+    electrical, electrical_error = mean_rate(response.electric, response.time, repeats)
+    exponent, exponent_error = mean_rate(response.growth, response.time, repeats)
     periods = response.time * p.control_frequency
-    _, impacts_error = _mean(response.contacts, periods, repeats)
+    _, impacts_error = mean_rate(response.contacts, periods, repeats)
     high, low = response.high.max(axis=1), response.low.min(axis=1)
     contacts = response.contacts.sum(axis=1)
     other = verdicts(response.growth, periods, machines.system.common == 0)
@@ -98,13 +100,6 @@ def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArr
         "regime": regime.astype(np.int8),
         "period": np.where(valid, response.period, -1).astype(np.int8),
     }
-
-
-def _mean(parts: Any, time: Any, repeats: Any) -> tuple[Any, Any]:
-    """Return the mean rate of a quantity given in batches, and its standard error."""
-    mean, error = mean_and_error(parts)
-    error = np.where(repeats, 0.0, error)
-    return mean * BATCHES / time, error * BATCHES / time
 
 
 def _ratio_error(parts: Any, denominator: Any, repeats: Any) -> Any:

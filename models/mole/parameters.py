@@ -6,7 +6,7 @@ relative to the mole, measured from the middle of the solenoid, positive forward
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 from typing import Annotated, Any, Literal, NamedTuple
 
 from uq.contract import Output, Parameter, Setting
@@ -73,6 +73,15 @@ class Params(NamedTuple):
         initial=True)] = -0.022
     initial_velocity: Annotated[float, Parameter(
         "v(0)", "m s-1", "rate of u at the start", (-10.0, 10.0), GIVEN, initial=True)] = 0.0
+    friction_gradient: Annotated[float, Parameter(
+        "mu_2'", "m-1", "growth of the mole's friction per distance driven", (-10.0, 10.0),
+        "assumed: ground that does not change")] = 0.0
+    coil_thermal_resistance: Annotated[float, Parameter(
+        "R_th", "K W-1", "temperature rise of the coil per power; 0: it stays cold", (0.0, 1e3),
+        "assumed: perfect cooling")] = 0.0
+    coil_thermal_capacity: Annotated[float, Parameter(
+        "C_th", "J K-1", "heat that warms the coil by 1 K", (1.0, 1e6),
+        "assumed: about 1 kg of copper")] = 400.0
 # fmt: on
 
 
@@ -108,11 +117,37 @@ class Settings:
     tolerance: Annotated[float, Setting("relative tolerance of a step", bounds=(1e-13, 1e-4))] = (
         1e-8
     )
+    distance: Annotated[
+        tuple[float, ...],
+        Setting("distances whose times are reported", "m", (0.0, 1e6), optional=True),
+    ] = ()
+    temperature: Annotated[
+        tuple[float, ...],
+        Setting(
+            "temperature rises of the coil whose times are reported",
+            "K",
+            (0.0, 1e4),
+            optional=True,
+        ),
+    ] = ()
+    horizon: Annotated[
+        float,
+        Setting("times to distance and temperature beyond it are censored", "s", (0.0, inf)),
+    ] = inf
+
+    def __post_init__(self) -> None:
+        for name in ("distance", "temperature"):
+            values: Any = getattr(self, name)
+            values = tuple(values) if isinstance(values, tuple | list) else (float(values),)
+            values = () if values == (0.0,) else values  # 0 asks for nothing
+            object.__setattr__(self, name, values)
+            if any(b <= a for a, b in zip((0.0, *values), values, strict=False)):
+                raise ValueError(f"{name} must be a list of increasing positive numbers")
 
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
-    """Return the coordinates of the outputs' dimensions (none)."""
-    return {}
+    """Return the coordinates of the outputs' dimensions."""
+    return {"distance": settings.distance, "temperature": settings.temperature}
 
 
 _EXTREME = "over the averaging time, with which it grows where the motion does not repeat"
@@ -164,5 +199,44 @@ OUTPUTS: Mapping[str, Output] = {
     "regime": Output("1", "type of settled response", "category", categories=REGIMES),
     "period": Output(
         "1", "common periods after which the response repeats", "category", categories=PERIODS
+    ),
+    "time_to_distance": Output(
+        "s",
+        "time until the mole has driven the distance",
+        "lifetime",
+        ("distance",),
+        success="the distance has been driven",
+        never_known_at_once=False,  # whether an irregular mole creeps at all may be undecided
+    ),
+    "time_to_distance_error": Output(
+        "s",
+        "numerical error of the time to the distance, by the mean velocities and the steps",
+        dims=("distance",),
+        may_be_undefined=True,
+    ),
+    "time_to_temperature": Output(
+        "s",
+        "time until the coil has warmed by the temperature",
+        "lifetime",
+        ("temperature",),
+        never_known_at_once=False,
+    ),
+    "time_to_temperature_error": Output(
+        "s",
+        "numerical error of the time to the temperature, by the mean powers and the steps",
+        dims=("temperature",),
+        may_be_undefined=True,
+    ),
+    "warm_temperature": Output(
+        "K",
+        "temperature rise of the coil: the temperature, or less where it settles before",
+        dims=("temperature",),
+        may_be_undefined=True,
+    ),
+    "warm_progression_rate": Output(
+        "m s-1",
+        "mean velocity of the mole with the coil at the warm temperature",
+        dims=("temperature",),
+        may_be_undefined=True,
     ),
 }

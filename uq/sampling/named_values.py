@@ -84,6 +84,8 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
         if name not in types:
             problems[name] = unknown_name("setting", name, model, model.setting_names)
             continue
+        if types[name] == tuple[float, ...] and _is_number(value):
+            value = [value]  # a list of one number
         with suppress(ValidationError):
             strict: TypeAdapter[Any] = TypeAdapter(types[name], config=ConfigDict(strict=True))
             # A number represents a word if the setting allows words such as nan and inf.
@@ -108,6 +110,10 @@ def fault_lines(
         for name, problem in problems.items()
         if problem
     ]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _frozen(value: Any) -> Any:

@@ -144,8 +144,13 @@ def _output_faults(
         return
     whole = re.split(r"\[|\s", name.strip())[0]  # "life[depth=1e-4]", "life at 100 um"
     if name != whole and whole in model.outputs:
-        dims = [dim for dim in model.outputs[whole].dims if f"{dim}s" in model.setting_names]
-        place = "".join(f"; for one {dim} alone, give no other in '{dim}s'" for dim in dims)
+        axes = {
+            dim: key
+            for dim in model.outputs[whole].dims
+            for key in (dim, f"{dim}s")
+            if key in model.setting_names
+        }
+        place = "".join(f"; for one {dim} alone, give no other in '{axes[dim]}'" for dim in axes)
         yield InputFault(path, f"name the output without its element: '{whole}'{place}", value)
     elif name not in model.outputs:
         yield InputFault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
@@ -153,7 +158,7 @@ def _output_faults(
         types = setting_types(model)
         lists = [setting for setting, kind in types.items() if kind == tuple[float, ...]]
         optional = [setting for setting in lists if model.setting(setting).optional]
-        along = {f"{dim}s" for dim in model.outputs[name].dims}
+        along = {key for dim in model.outputs[name].dims for key in (dim, f"{dim}s")}
         optional = [setting for setting in optional if setting in along] or optional
         yield InputFault(path, f"requires {choices(optional)} in [settings]", value)
     elif no_number and model.outputs[name].is_category:

@@ -15,6 +15,6 @@ Reading order; a module imports only those above it:
     propagator    n moles, prepared, started and advanced
 """
 
-from models.mole.lanes.propagator import System, advance, groups, monodromy, start
+from models.mole.lanes.propagator import System, advance, groups, monodromy, resume, start
 
-__all__ = ["System", "advance", "groups", "monodromy", "start"]
+__all__ = ["System", "advance", "groups", "monodromy", "resume", "start"]

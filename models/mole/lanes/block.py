@@ -77,7 +77,8 @@ ADDED_MOST, WIDTH, INVERSE = range(75, 78)
 
 GROWTH = 78  # logarithm of the factor by which tangents were divided
 SHARE = 79  # of the series whose errors count: the inverse of the error allowed
-ROWS = SHARE + WATCHED
+SQUARED = SHARE + WATCHED  # sum so far of the square of the current
+ROWS = SQUARED + 1
 
 TO_REPEAT = 2 * LONGEST_PERIOD
 """Number of common periods in which a motion with the longest period is seen to repeat."""

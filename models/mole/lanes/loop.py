@@ -16,7 +16,7 @@ from models.mole.lanes.expand import expand, expand_tangents
 from models.mole.lanes.locate import find, refine
 from models.mole.lanes.looks import limit_step, look, next_step
 from models.mole.lanes.modes import mole_of
-from models.mole.lanes.move import move, move_tangents
+from models.mole.lanes.move import move, move_tangents, warm
 from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, unload
 from models.mole.lanes.strobe import strobe
 from models.numerics.jit import kernel, lean
@@ -64,6 +64,7 @@ def propagator(columns: int) -> Callable[..., None]:
                 if m[at.LOOK * LANES + lane] > 0.0:
                     find(lane, m, y, w)
             refine(m, w)
+            warm(m, w)
             move(m, y, w)
             if columns > 0:
                 move_tangents(m, y, w, columns)

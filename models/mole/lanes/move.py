@@ -86,6 +86,23 @@ def move(m, y, w):
 
 
 @lean
+def warm(m, w):
+    """Add the integral of the square of the current over the step, before lanes `move`."""
+    total = _HERE + 10 * LANES
+    for lane in range(LANES):
+        w[total + lane] = 0.0
+    for k in range(ORDER - 1, -1, -1):
+        share = 1.0 / (k + 1)
+        for lane in range(LANES):
+            term = share * w[at.SQUARE_S * _SERIES + k * LANES + lane]
+            w[total + lane] = fma(w[total + lane], m[at.REACH * LANES + lane], term)
+    for lane in range(LANES):
+        time = m[at.REACH * LANES + lane] * m[at.STEP * LANES + lane]
+        j = at.SQUARED * LANES + lane
+        m[j] = fma(time, w[total + lane], m[j])
+
+
+@lean
 def move_tangents(m, y, w, columns):
     """Advance the tangents of all lanes."""
     for column in range(columns):

@@ -16,6 +16,7 @@ from models.mole.lanes.rows import (
     REPEATING,
     Task,
     begin,
+    move_on,
     table_of,
 )
 from models.mole.parameters import Rows, Settings
@@ -86,6 +87,13 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
     """
     record = np.empty((len(system.table), RECORD))
     begin(system.table, displacement, velocity, record)
+    return record
+
+
+def resume(system: System, record: Array) -> Array:
+    """Return the records of moles that go on from earlier ones with the constants of a system."""
+    record = record.copy()
+    move_on(system.table, record)
     return record
 
 

@@ -36,8 +36,9 @@ from models.numerics.jit import kernel, lean
     OUTCOME,
     PERIOD,
     GROWTH,
-) = range(20)
-RECORD = 20
+    SQUARED,
+) = range(21)
+RECORD = 21
 
 GOING, REPEATING, REACHED_END, OUT_OF_BUDGET, STUCK = range(5)
 """Outcomes of a run."""
@@ -95,6 +96,16 @@ def begin(table, displacement, velocity, record):
         r[TOUCHING] = touching
 
 
+@kernel
+def move_on(table, record):
+    """Let moles go on with other constants: judge again which interfaces stick."""
+    for row in range(len(record)):
+        q, r = mole_of(table, row), record[row]
+        force, _, _ = force_on_bar(q, r[TOUCHING] == 1, r[U], r[V], r[CURRENT])
+        r[BAR_MODE], r[MOLE_MODE] = decide(q, r[V], r[X], force)
+        r[TRIALS] = 0.0
+
+
 @lean
 def load(lane, row, task, m, y, columns):
     """Load a row into a lane."""
@@ -116,6 +127,7 @@ def load(lane, row, task, m, y, columns):
     m[at.GROWTH * LANES + lane] = 0.0
     for j in range(INTEGRALS):
         m[(at.SUM + j) * LANES + lane] = 0.0
+    m[at.SQUARED * LANES + lane] = 0.0
     m[at.DAMPING * LANES + lane] = q.damping
     m[at.SLOPE * LANES + lane] = -2 * q.sharpness
     m[at.ADDED_MOST * LANES + lane] = q.bar_inductance
@@ -160,6 +172,7 @@ def unload(lane, task, m, y, columns, outcome):
     r[HIGH] = max(m[at.HIGH * LANES + lane], y[at.U * LANES + lane])
     r[TRIALS] = m[at.TRIALS * LANES + lane]
     r[GROWTH] = m[at.GROWTH * LANES + lane]
+    r[SQUARED] = m[at.SQUARED * LANES + lane]
     r[OUTCOME] = outcome
 
 

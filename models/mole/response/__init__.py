@@ -7,4 +7,5 @@ Reading order; a module imports only those above it:
     machines     n moles and their present states
     settling     until the start is forgotten
     following    averages, over periods or over batches
+    settled      all of these, for n moles
 """

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from models.mole.lanes import System, advance, groups, start
+from models.mole.lanes import System, advance, groups, resume, start
 from models.mole.lanes.rows import HALF
 from models.mole.parameters import Rows, Settings
 from models.mole.response.measured import Array, Counts
@@ -32,6 +32,12 @@ class Machines(NamedTuple):
         ((_, system),) = groups(p, settings)
         system = system._replace(budget=system.budget * max(1, -(-periods // APERIODIC)))
         return Machines(system, start(system, p.initial_displacement, p.initial_velocity))
+
+    def with_inputs(self, rows: Counts, p: Rows, settings: Settings) -> "Machines":
+        """Return some of the moles in their present states, with other inputs and a new budget."""
+        ((_, system),) = groups(p, settings)
+        system = system._replace(budget=self.system.budget)
+        return Machines(system, resume(system, self.record[rows]))
 
     def run(
         self, rows: Counts, limit: Counts, tangents: Array | None = None, repeat: bool = False

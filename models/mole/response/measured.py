@@ -5,7 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.lanes.rows import CONTACTS, ELECTRIC, HIGH, IMPACT, IMPULSE, LOW, PROGRESS
+from models.mole.lanes.rows import (
+    CONTACTS,
+    ELECTRIC,
+    HIGH,
+    IMPACT,
+    IMPULSE,
+    LOW,
+    PROGRESS,
+    SQUARED,
+)
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -22,9 +31,10 @@ class Response(NamedTuple):
     ----------
     time : ndarray, shape (n,)
         Time averaged over [s].
-    progress, impact, electric, impulse, contacts : ndarray, shape (n, BATCHES)
+    progress, impact, electric, impulse, contacts, squared : ndarray, shape (n, BATCHES)
         Advance of the mole [m], work of the impacts and of the supply [J], impulse of the contact
-        force [N s] and number of contacts in each batch; all in the first if the motion repeats.
+        force [N s], number of contacts and integral of the square of the current [A2 s] in each
+        batch; all in the first if the motion repeats.
     low, high : ndarray, shape (n, BATCHES)
         Smallest and largest displacement u [m] in each batch; infinite in batches without motion.
     touching : ndarray of bool, shape (n,)
@@ -42,6 +52,7 @@ class Response(NamedTuple):
     electric: Array
     impulse: Array
     contacts: Array
+    squared: Array
     low: Array
     high: Array
     touching: Flags
@@ -51,8 +62,8 @@ class Response(NamedTuple):
     @staticmethod
     def nothing(n: int) -> "Response":
         """Return n unknown responses."""
-        batches = (np.zeros((n, BATCHES)) for _ in range(6))
-        progress, impact, electric, impulse, contacts, growth = batches
+        batches = (np.zeros((n, BATCHES)) for _ in range(7))
+        progress, impact, electric, impulse, contacts, squared, growth = batches
         return Response(
             np.full(n, np.nan),
             progress,
@@ -60,6 +71,7 @@ class Response(NamedTuple):
             electric,
             impulse,
             contacts,
+            squared,
             np.full((n, BATCHES), np.inf),
             np.full((n, BATCHES), -np.inf),
             np.zeros(n, bool),
@@ -79,5 +91,6 @@ class Response(NamedTuple):
         self.electric[rows, batch] += record[:, ELECTRIC]
         self.impulse[rows, batch] += record[:, IMPULSE]
         self.contacts[rows, batch] += record[:, CONTACTS]
+        self.squared[rows, batch] += record[:, SQUARED]
         self.low[rows, batch] = np.minimum(self.low[rows, batch], record[:, LOW])
         self.high[rows, batch] = np.maximum(self.high[rows, batch], record[:, HIGH])

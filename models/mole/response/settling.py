@@ -24,7 +24,7 @@ _LOOK = 1.0  # s between two checks of the tangent flow
 
 
 def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
-    """Take n moles from their start to their settled response.
+    """Take n moles from their present states to their settled response.
 
     Parameters
     ----------
@@ -41,9 +41,9 @@ def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
     common = machines.system.common
     rows = np.arange(len(common))
     longest = np.maximum(np.ceil(LONGEST * machines.system.control_frequency), 1).astype(np.int64)
-    alone = common == 0
+    begun, alone = machines.periods(rows), common == 0
     if transient:
-        reached = machines.run(rows, np.full(len(rows), transient))
+        reached = machines.run(rows, begun + transient)
         # This shows periods up to half of these; `settle_late` finds the longer ones.
         longest = transient + (LONGEST_PERIOD + 1) * common
         other = reached[alone[reached]]
@@ -51,7 +51,7 @@ def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
     else:
         other = _forget(machines, rows[alone], longest[alone])
         rows = rows[~alone]
-    rows = rows[machines.run(rows, longest[rows], repeat=True)]
+    rows = rows[machines.run(rows, (begun + longest)[rows], repeat=True)]
     repeats = machines.record[rows, OUTCOME] == REPEATING
     return rows[repeats], np.concatenate([other, rows[~repeats]])
 
@@ -61,7 +61,8 @@ def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
     done = [np.empty(0, np.int64)]
     look = np.maximum(np.round(_LOOK * machines.system.control_frequency[rows]), 1).astype(np.int64)
     tangents, growth = np.ones((len(rows), MEASURED)), np.zeros(len(rows))
-    limit, rested = look.copy(), np.zeros(len(rows), np.int64)
+    begun, rested = machines.periods(rows), np.zeros(len(rows), np.int64)
+    limit, longest = begun + look, begun + longest
     while len(rows):
         reached = machines.run(rows, np.minimum(limit, longest), tangents)
         record = machines.record[rows]
