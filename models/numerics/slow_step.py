@@ -34,6 +34,7 @@ _SHORTENINGS = 60
 _MARGIN = 0.95  # of the motion allowed, in a step that is shortened to it
 _SMALLEST = 1e-3  # factor by which a step is shortened at once
 _LEVEL = 1e-8  # relative change of a rate below which its derivative is not known
+_NOISY = 2.0  # error of a step over its standard error that noise alone may cause
 _STRONGEST = 1.0  # logarithm by which an error grows in a step, at most
 
 
@@ -86,8 +87,8 @@ def _scale(i, step, floor):
 def accumulate(step, span):
     """Add the errors of an accepted step; needs `Stepper.judge`.
 
-    Errors of earlier steps grow with the derivative of the rate by its own quantity, as f* and f_1
-    show it.
+    An error of the step that noise alone may cause counts as noise, not again. Errors of earlier
+    steps grow with the derivative of the rate by its own quantity, as f* and f_1 show it.
     """
     for i in range(step.shape[1]):
         turn = step[RATE_STAR, i] - step[RATE, i]
@@ -96,8 +97,10 @@ def accumulate(step, span):
             growth = 2 * (step[RATE_END, i] - step[RATE_STAR, i]) / turn
             growth = max(-_STRONGEST, min(_STRONGEST, growth))
         factor = 1 + growth * (1 + growth / 2)
-        step[ERROR, i] = fma(step[ERROR, i], factor, step[LOCAL, i])
-        step[VARIANCE, i] = fma(step[VARIANCE, i], factor * factor, (span * step[NOISE, i]) ** 2)
+        noise = span * step[NOISE, i]
+        local = step[LOCAL, i] if step[LOCAL, i] > _NOISY * noise else 0.0
+        step[ERROR, i] = fma(step[ERROR, i], factor, local)
+        step[VARIANCE, i] = fma(step[VARIANCE, i], factor * factor, noise * noise)
 
 
 def stepper(coordinates: Callable[..., None]) -> Stepper:

@@ -18,9 +18,7 @@ from models.beam.structure.modal import Array, beams, free_reach
 from models.beam.structure.propagation import FIRST_MODE, Propagator, System
 from models.beam.units import watt
 
-_PUSH = 3e-3  # of the first mode [X0], to leave an orbit that has lost its stability
-
-
+_PUSH = 1e-6  # of the first mode [X0], to leave an orbit that has lost its stability
 _SEGMENTS = 8  # in which a response is observed, at least: a life averages many of them
 
 
