@@ -55,7 +55,9 @@ def run(model, settings, x, seed):
 
 def with_all_outputs(model):
     """Return settings under which a model has every output."""
-    return replace(model.settings(), **dict.fromkeys(optional_coordinates(model), (1.0, 2.0)))
+    mapped = {"map_growth": 1e-4} if "map_growth" in model.setting_names else {}
+    lists = dict.fromkeys(optional_coordinates(model), (1.0, 2.0))
+    return replace(model.settings(), **lists, **mapped)
 
 
 def optional_coordinates(model):

@@ -50,7 +50,9 @@ def test_bounds_hold_what_the_interval_misses(method, failing):
     assert life["b_lives"]["B1"]["failed_low"] == 0.0  # 8 % may have ended at once
     assert life["quantiles"]["0.95"]["failed_high_never"]
     assert [
-        note for note in statistics["notes"] if note.startswith("80 of 1000 independent rows fail")
+        note
+        for note in statistics["notes"]
+        if note.startswith("80 of 1000 independent rows are invalid")
     ]
 
 

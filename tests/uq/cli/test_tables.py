@@ -38,7 +38,7 @@ def test_a_summary_names_units_sides_and_rows_that_failed(printed):
     sides = summarised(ds)["outputs"]["life"]["thresholds"]["25200.0"]
     assert cells(lines, "P(> 7 hours)")[0] == f"{sides['above']['value']:.5g}"
     assert cells(lines, "P(< 7 hours)")[0] == f"{sides['below']['value']:.5g}"
-    assert cells(lines, "failed") == ["2", "rows"] and cells(lines, "raised") == ["2"]
+    assert cells(lines, "invalid") == ["2", "rows"] and cells(lines, "raised") == ["2"]
     assert cells(lines, "mean")[0] == "10" and not any("36000" in line for line in lines)
 
 

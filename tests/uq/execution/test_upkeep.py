@@ -96,7 +96,7 @@ def test_failed_rows_are_run_again_with_changed_settings(uq, result):
     )
     assert (last["status"] == Status.OK).all()
     assert uq("verify", "out.nc").code == 0
-    assert "no row failed" in uq("rerun", "out.nc", "--failed").err
+    assert "no row is invalid" in uq("rerun", "out.nc", "--failed").err
     assert uq("extend", "out.nc", "--samples", 300, *QUIETLY).code == 0
     assert np.array_equal(api.open_result("out.nc")["rerun"].values[:200], last["rerun"].values)
 
@@ -125,7 +125,7 @@ def test_failed_rows_run_again_as_they_were_change_no_bit(uq, result):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ((), "uq rerun: give --failed, the rows to compute again\n"),
+        ((), "uq rerun: add --failed: it recomputes the invalid rows\n"),
         (("--failed", "--setting", "fail_abov=1"), "setting fail_abov = 1: no such setting of"),
         (("--failed", "--setting", "fail_how=no"), "setting fail_how = 'no': must be one of"),
     ],

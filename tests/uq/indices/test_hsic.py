@@ -174,7 +174,7 @@ def test_without_an_event_there_is_a_sentence():
 
 def test_without_a_row_there_is_another():
     ds = with_status(decided(), slice(None), Status.NON_FINITE)
-    with pytest.raises(InputError, match="every row failed"):
+    with pytest.raises(InputError, match="every row is invalid"):
         sensitivities(ds.assign(z=ds["z"] * np.nan), TARGET)
 
 

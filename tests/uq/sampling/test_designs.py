@@ -142,7 +142,9 @@ def test_a_halton_design_is_more_even_than_chance():
 @pytest.mark.parametrize("method", POWERS)
 @pytest.mark.parametrize(("samples", "following"), [(3, 4), (1000, 1024), (1025, 2048)])
 def test_the_next_legal_size_is_stated(method, samples, following):
-    assert DESIGNS[method].size_problem(samples) == sentence("size", next=following)
+    assert DESIGNS[method].size_problem(samples) == sentence(
+        "size", least=following // 2, next=following
+    )
     assert DESIGNS[method].size_problem(following) is None
 
 

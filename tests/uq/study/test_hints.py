@@ -139,8 +139,8 @@ def test_ends_of_the_sample_need_rows(studied):
     more = analysis + 'joint_bounds = {y = "both"}'
     assert studied(samples=58, analysis=more) == [
         "[analysis] quantiles: 0.001 of 58 rows will have no value; 999 rows are needed",
-        "[analysis] tolerance: 58 rows will give no bound; 59 are needed if none fails",
-        "[analysis] joint_bounds: 58 rows will give no bound; 93 are needed if none fails",
+        "[analysis] tolerance: 58 rows will give no bound; 59 are needed if no row is invalid",
+        "[analysis] joint_bounds: 58 rows will give no bound; 93 are needed if no row is invalid",
     ]
     assert studied(samples=999, analysis=more) == []
 

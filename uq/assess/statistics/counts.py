@@ -30,7 +30,7 @@ def counts(element: Element, context: Context) -> Iterator[Statistic]:
     for name in ("never", "censored", "undefined", "failed"):
         number = float(getattr(element, name).sum())
         label = "invalid" if name == "failed" else name
-        yield Statistic((name,), label, Estimate(number), "rows", COUNT)
+        yield Statistic((name,), label, Estimate(number), "rows", COUNT, column=name)
     if element.is_lifetime and element.never.any():
         sample = context.sample(element)
         yield Statistic(

@@ -199,7 +199,7 @@ def test_basins_are_coloured_by_attractor_and_explained(basins):
     assert colours == [COLOURS[0], COLOURS[1], COLOURS[0], COLOURS[0], "#FFFFFF", COLOURS[0]]
     text = entries(figure)[0]
     assert text.startswith("No-impact, period 1, −") and "µm s⁻¹, " in text and text.endswith(" %")
-    assert entries(figure)[-1] == "failed, 16.7 %"
+    assert entries(figure)[-1] == "invalid, 16.7 %"
     share = float(basins["share"][0])
     many = basins.isel(basin=[0] * (len(COLOURS) + 2))
     assert entries(plots.basins(many))[len(COLOURS)] == f"2 others, {percent(2 * share)}"

@@ -109,7 +109,7 @@ def test_marks_and_band_of_a_life_lie_at_its_curve():
 def test_rows_without_a_value_are_counted_where_they_are_missing():
     ds = linear(samples=64, settings={"fail_above": 0.9})
     lost = int(ds["y"].isnull().sum())
-    assert f"64 runs, {lost} failed" in words(plots.histogram(ds, "y"))
+    assert f"64 runs, {lost} invalid" in words(plots.histogram(ds, "y"))
     ds = kinds(samples=100)
     censored = int(ds["life_censored"][:, 0, 0].sum())
     assert f"{censored} censored" in words(plots.scatter(ds, "life[side=left,depth=0.5]"))

@@ -75,5 +75,5 @@ def test_points_that_are_drawn_as_an_image_leave_the_text_of_their_figure_sharp(
 def test_of_an_output_without_any_value_nothing_is_drawn():
     ds = linear(samples=32, settings={"fail_above": -1.0})
     parsed = read(ds)
-    assert "Failed rows: 32" in parsed.plain_words
+    assert "Invalid rows: 32" in parsed.plain_words
     assert parsed.tags.count("figure") == 1  # of the inputs
