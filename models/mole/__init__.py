@@ -48,6 +48,10 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
+    dimensions={
+        "distance": ("m", "distance driven"),
+        "temperature": ("K", "rise of the coil's temperature"),
+    },
     block=256,
     references=(
         "J.-H. Ho, V.-D. Nguyen, K.-C. Woo, Nonlinear dynamics of a new electro-vibro-impact "
