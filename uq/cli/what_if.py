@@ -69,6 +69,9 @@ def what_if(path: Path, texts: Sequence[str], target: Path | None, json: bool) -
         lines = (_lines(*pair, pair[0].label) for pair in pairs)
         grid(chain.from_iterable(lines), _HEADER)
     for name, output in changed.summary.outputs.items():
+        if name not in studied.outputs:
+            note(f"{name}: not in the result as studied, so without a difference.")
+            continue
         declared = result.outputs[name.partition("[")[0]]
         quantiles = (statistic.estimate.value for statistic in output.parts["quantiles"])
         unit = unit_of(output.units, typical(quantiles))

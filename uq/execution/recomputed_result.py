@@ -48,13 +48,15 @@ def recompute(result: AnyResult, changes: Mapping[str, Any]) -> xr.Dataset:
     )
     source = result_file.file_of(ds)
     studied, difference = study_here(text, identity, version, int(samples), source)
-    if difference:
-        raise InputError(f"rows computed again: were computed with another model ({difference})")
     model, n = studied.model, len(result)
     if model.again is None:
         raise InputError(
             f"what if: rows of '{model.name}' keep nothing from which others are computed:"
             f" '{next(iter(changes))}' needs rows of its own: change it in a study, and run that"
+        )
+    if difference:
+        raise InputError(
+            f"{source}: was computed with another model ({difference}): run its study again"
         )
     study = studied.with_changes(changes)
     before, rows = row_block(studied, 0, n), row_block(study, 0, n)

@@ -73,6 +73,13 @@ def test_a_what_if_on_settings_prints_both_and_keeps_the_new_result(rods, uq, mo
     assert compared.code == 0 and "B  flat.nc  flat (3 rows)" in compared.out
 
 
+def test_depths_that_the_result_has_not_are_named(rods, uq):
+    ended = uq("what-if", rods, "--set", "settings.depths=[1e-5, 2e-5]")
+    assert ended.code == 0, ended.err
+    assert "first_time_to_depth[depth=1e-05]: not in the result as studied" in ended.out
+    assert "first_time_to_depth[depth=2e-05] [" in ended.out
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
