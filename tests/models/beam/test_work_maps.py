@@ -130,7 +130,7 @@ def test_a_rod_that_leaves_its_map_is_out_of_budget(mapped):
 
 @pytest.mark.slow
 def test_lives_from_maps_agree_with_lives_of_the_beam_within_their_errors():
-    x = rows(200, **RANDOM)
+    x = rows(64, **RANDOM)
     _, direct, _ = computed(x)
     _, outputs, status = computed(x, map_growth=1e-4)
     assert not status.any()
