@@ -1,9 +1,10 @@
 """Terminal output of ``uq what-if``."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from math import inf, isfinite, nan
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -37,25 +38,9 @@ def what_if(path: Path, texts: Sequence[str], target: Path | None, json: bool) -
     """
     result = Result.open(path)
     changes = read_changes(texts)
-    laws = {place: value for place, value in changes.items() if not place.startswith(_AGAIN)}
-    others = {place: value for place, value in changes.items() if place.startswith(_AGAIN)}
-    again = result
-    if others:
-        from uq.execution.recomputed_result import recompute
-
-        if target is not None:
-            others |= {"study.name": target.stem}
-        again = Result(recompute(result, others))
-    if target is not None:
-        if not others or laws:
-            raise InputError("-o: only rows computed again are written: change settings or [fixed]")
-        write_result(again.dataset, target)
-    if laws:
-        changed = reweighted_summary(again, laws)
-    else:
-        n = len(again)
-        equal = ImportanceWeights(np.ones(n), -inf, n, float(n))
-        changed = WhatIf(summarise(again), float(n), nan, equal)
+    if target is not None and target.resolve() == path.resolve():
+        raise InputError(f"-o {target}: is the result itself; name another file")
+    changed = _changed(result, changes, target)
     if json:
         print_json(what_if_facts(changed).json)
         return
@@ -92,7 +77,8 @@ def what_if(path: Path, texts: Sequence[str], target: Path | None, json: bool) -
     weighted = f"weighted: worth {changed.effective_rows:.0f} independent ones"
     if isfinite(changed.pareto_k):
         weighted += f"; Pareto k = {changed.pareto_k:.2f}"
-    ways = ["computed again from what they have kept"] * bool(others) + [weighted] * bool(laws)
+    again = [place.startswith(_AGAIN) for place in changes]
+    ways = ["computed again from what they have kept"] * any(again) + [weighted] * (not all(again))
     note(
         f"The same rows, {', '.join(ways)}."
         + (target is not None) * " 'uq compare' shows the difference row by row."
@@ -100,6 +86,28 @@ def what_if(path: Path, texts: Sequence[str], target: Path | None, json: bool) -
         " correlation of the two estimates. *: the interval excludes zero. Differences of"
         " probabilities are in percentage points."
     )
+
+
+def _changed(result: Result, changes: Mapping[str, Any], target: Path | None) -> WhatIf:
+    """Return the summary under changes; write rows computed again to `target`, if given."""
+    laws = {place: value for place, value in changes.items() if not place.startswith(_AGAIN)}
+    others = {place: value for place, value in changes.items() if place.startswith(_AGAIN)}
+    if target is not None and (not others or laws):
+        raise InputError("-o: only rows computed again are written: change settings or [fixed]")
+    again = result
+    if others:
+        from uq.execution.recomputed_result import recompute
+
+        if target is not None:
+            others |= {"study.name": target.stem}
+        again = Result(recompute(result, others))
+    if target is not None:
+        write_result(again.dataset, target)
+    if laws:
+        return reweighted_summary(again, laws)
+    n = len(again)
+    equal = ImportanceWeights(np.ones(n), -inf, n, float(n))
+    return WhatIf(summarise(again), float(n), nan, equal)
 
 
 def _pairs(

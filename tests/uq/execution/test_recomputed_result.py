@@ -69,6 +69,9 @@ def test_a_what_if_on_settings_prints_both_and_keeps_the_new_result(rods, uq, mo
     ended = uq("what-if", "rods.nc", "--set", "settings.scar=flat-bar", "-o", "flat.nc")
     assert ended.code == 0, ended.err
     assert "computed again" in ended.out and "first_time_to_depth" in ended.out
+    for asked in (("settings.scar=flat-bar", "rods.nc"), ("uncertain.initial_gap.sd=2e-5", "a.nc")):
+        refused = uq("what-if", "rods.nc", "--set", asked[0], "-o", asked[1])
+        assert refused.code == 2 and "-o" in refused.err and refused.err.count("\n") == 1
     compared = uq("compare", "rods.nc", "flat.nc")
     assert compared.code == 0 and "B  flat.nc  flat (3 rows)" in compared.out
 
