@@ -128,7 +128,7 @@ def compare(n, seed):
                 f"{part:+7.2%}{'' if off <= error + doubt else '  beyond'}",
                 flush=True,
             )
-    print(f"within the stated error and that of the reference: {within} of {count} lives")
+    print(f"{within} of {count} lives are within the sum of the stated and the reference's error")
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ from uq.result.workload import Workload, workload_of
 from uq.stats.intervals import upper_probability
 from uq.stats.quantile_functions import student
 from uq.study.definition import Study
-from uq.study.evaluate import Chunk, joined
+from uq.study.evaluate import Chunk, examples_of, joined
 from uq.study.row_sampling import Rows
 from uq.text.numbers import elapsed
 
@@ -151,7 +151,7 @@ def pilot(
     times = row_seconds, likely, low, high
     cost = Cost(total, count, len(rows.x), *times, result_bytes, kept + result_bytes)
     chunk = joined(computed_chunks)
-    failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
+    failures = examples_of(chunk.failures)
     parts = zip(starts, row_blocks, strict=True)
     numbers = np.concatenate([np.arange(start, start + len(part.x)) for start, part in parts])
     return cost, result_file.build(study, rows, chunk.columns, chunk.status, failures, numbers)

@@ -12,7 +12,7 @@ from uq.errors import InputError
 from uq.execution.recomputed_row import study_here
 from uq.result import result_file
 from uq.result.result import AnyResult, Result
-from uq.study.evaluate import evaluate, joined
+from uq.study.evaluate import evaluate, examples_of, joined
 from uq.study.row_sampling import row_block
 
 _BLOCK = 512  # rows computed at a time
@@ -72,7 +72,7 @@ def recompute(result: AnyResult, changes: Mapping[str, Any]) -> xr.Dataset:
         machine = replace(study.model, batch=_batch(model.again, _part(kept, block)))
         chunks.append(evaluate(machine, study.settings, rows.x[block], rows.seed[block], start))
     chunk = joined(chunks)
-    failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
+    failures = examples_of(chunk.failures)
     return result_file.build(study, rows, chunk.columns, chunk.status, failures)
 
 

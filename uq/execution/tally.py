@@ -16,7 +16,7 @@ from uq.contract import Status
 from uq.files.whole_files import flush
 from uq.result.workload import Preview, Workload
 from uq.study.definition import Study
-from uq.study.evaluate import Chunk, columns_of, failed_rows
+from uq.study.evaluate import Chunk, columns_of, examples_of, failed_rows
 from uq.study.row_sampling import Rows
 
 Block = tuple[int, int]
@@ -174,7 +174,7 @@ class MemoryStore:
     @property
     def examples(self) -> dict[str, str]:
         """Status label -> message of the first row with that status."""
-        return {label: f"row {row}: {text}" for label, (row, text) in self.failures.items()}
+        return examples_of(self.failures)
 
     def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
         """Count and keep the rows from `start` on.

@@ -79,6 +79,11 @@ class Chunk(NamedTuple):
     failures: dict[str, tuple[int, str]]
 
 
+def examples_of(failures: Mapping[str, tuple[int, str]]) -> dict[str, str]:
+    """Return status label -> message of the first row with that status, from `Chunk.failures`."""
+    return {label: f"row {row}: {text}" for label, (row, text) in failures.items()}
+
+
 class RowFailure(NamedTuple):
     """Reason why rows have no values."""
 

@@ -189,7 +189,7 @@ def find_service_lives(
     if maps is None:
         maps = no_maps(n, len(duty))
         if responses is not None:
-            _fill_maps(maps, responses, p, settings, seed)
+            _fill_maps(maps, responses, p, duty, settings, seed)
     rods = _rows(p, settings, duty, reach, fit_maps(maps))
     until = np.zeros(n)
     worn = np.full((n, instants.shape[1], 2), np.nan)
@@ -238,7 +238,12 @@ def find_service_lives(
 
 
 def _fill_maps(
-    maps: WorkMaps, responses: Responses, p: Rows, settings: Settings, seed: NDArray[np.uint64]
+    maps: WorkMaps,
+    responses: Responses,
+    p: Rows,
+    duty: Array,
+    settings: Settings,
+    seed: NDArray[np.uint64],
 ) -> None:
     """Map the work-rates of rods under a random force, each pair of gaps from the one before.
 
@@ -247,7 +252,6 @@ def _fill_maps(
     random = np.flatnonzero((p.random_force_level > 0) & (settings.map_growth > 0))
     if not len(random):
         return
-    duty = duty_numbers(settings.duty, settings.order, FACTORS)
     worn = (duty[:, TIME] > 0) & (duty[:, WEAR] > 0)
     least = np.maximum(gaps_when_new(p)[:, None] + duty[:, OFFSET, None], 0.0)
     least[:, ~worn] = np.inf
