@@ -35,6 +35,7 @@ from uq.result.variables import (
     study_attributes,
 )
 from uq.study.evaluate import failed_rows
+from uq.study.file import source_of_fixed
 from uq.study.installed_models import made_here, model_names, without_returns
 from uq.study.model_files import file_with, shortened
 from uq.study.provenance import provenance
@@ -124,7 +125,12 @@ def build(
             model, name, rows.x[:, i], varied[name].source, study.level(name) if nested else ""
         )
         if name in varied
-        else parameter_variable(model, name, study.fixed.get(name, model.nominal[name]))
+        else parameter_variable(
+            model,
+            name,
+            study.fixed.get(name, model.nominal[name]),
+            source_of_fixed(study.fixed.get(name, 0.0)),
+        )
         for i, name in enumerate(model.parameter_names)
     }
     ds = xr.Dataset(

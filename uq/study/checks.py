@@ -14,6 +14,7 @@ from uq.sampling.designs import DESIGNS, PATHS, Design
 from uq.sampling.input_faults import InputFault, unknown
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.sampling.named_values import parameter_problem, read_settings, setting_types, unknown_name
+from uq.study.file import number_of_fixed
 from uq.text.element_names import place_of, places, whole_name
 from uq.text.quantities import misfit, read_quantity
 
@@ -38,8 +39,9 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     """
     yield from _name_faults(model, data)
     for name, value in tables["fixed"].items():
-        if name in model.parameter_names and (problem := parameter_problem(model, name, value)):
-            yield InputFault(("fixed", name), problem, value)
+        number = number_of_fixed(value)
+        if name in model.parameter_names and (problem := parameter_problem(model, name, number)):
+            yield InputFault(("fixed", name), problem, number)
     given, analysis = tables["settings"], tables["analysis"]
     settings, problems = read_settings(model, given)
     for name, text in problems.items():

@@ -49,7 +49,7 @@ class Study:
     design : DesignTable
         method, samples, replicates, units, repeats, second_order, seed, until.
     fixed : dict of str to float
-        Parameters that override their nominal values.
+        Parameters that override their nominal values; `source_of_fixed` has their sources.
     uncertain : dict of str to Law
         Laws in the order of the file, which is the order of the columns of the design. For a
         parameter that is a multiple of another, the law of the factor.

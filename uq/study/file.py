@@ -361,14 +361,49 @@ class AnalysisTable(_Table):
     )
 
 
+class Sourced(float):
+    """A fixed value with its `source`."""
+
+    source = ""
+
+
+def source_of_fixed(value: float) -> str:
+    """Return the source that a study states for a value in [fixed], or ""."""
+    return value.source if isinstance(value, Sourced) else ""
+
+
+def number_of_fixed(entry: Any) -> Any:
+    """Return the number of an entry in [fixed], which may be a table with its source."""
+    return entry.get("value") if isinstance(entry, Mapping) else entry
+
+
+def _fixed_value(entry: Any, number: ValidatorFunctionWrapHandler) -> Any:
+    if not isinstance(entry, Mapping):
+        return entry if isinstance(entry, Sourced) else number(entry)
+    for key in entry:
+        if key not in ("value", "source"):
+            raise ValueError(
+                f"has no key '{key}'{nearest(key, ('value', 'source'))} (allowed: value, source)"
+            )
+    if "value" not in entry or not isinstance(entry.get("source", ""), str):
+        raise ValueError('must be a number, or {value = 1.5, source = "data sheet: given"}')
+    value = Sourced(number(entry["value"]))
+    value.source = entry.get("source", "")
+    return value
+
+
 class StudyFile(_Table):
     """A study: model, laws of inputs, design and analysis."""
 
     study: StudyTable
     design: DesignTable
     # The bounds of a parameter determine whether it may be infinite.
-    fixed: dict[str, Annotated[float, Field(allow_inf_nan=True)]] = Field(
-        {}, description="parameter = value: overrides the nominal"
+    fixed: dict[str, Annotated[float, Field(allow_inf_nan=True), WrapValidator(_fixed_value)]] = (
+        Field(
+            {},
+            description="parameter = value: overrides the nominal; a table {value, source} states"
+            " where the value comes from",
+        )
     )
     uncertain: dict[str, Entry] = Field(description="one table per parameter that varies")
     dependence: DependenceTable | None = Field(None, description="rank correlations of inputs")

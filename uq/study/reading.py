@@ -117,7 +117,11 @@ def in_units_of(model: Model, data: dict[str, Any]) -> dict[tuple[str, ...], str
         return entries if isinstance(entries := data.get(name), dict) else {}
 
     for name in {*table("fixed")} & {*model.parameter_names}:
-        convert(table("fixed"), name, model.parameter(name).unit, ("fixed", name))
+        entries, key = table("fixed"), name
+        if isinstance(entries[name], dict):
+            entries, key = entries[name], "value"
+        if key in entries:
+            convert(entries, key, model.parameter(name).unit, ("fixed", name))
     for name in {*table("uncertain")} & {*model.parameter_names}:
         misfits |= law_in_units(table("uncertain")[name], name, model.parameter(name).unit)
     kinds = setting_types(model)

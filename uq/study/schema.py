@@ -42,7 +42,9 @@ def json_schema() -> Schema:
         definitions[law.__name__]["properties"] = {
             key: _with_units(argument) for key, argument in properties.items()
         }
-    schema["properties"]["fixed"]["additionalProperties"] = _with_units({"type": "number"})
+    schema["properties"]["fixed"]["additionalProperties"] = _with_source(
+        _with_units({"type": "number"})
+    )
     definitions["Law"] = laws
     definitions["Entry"] = {"oneOf": [{"$ref": "#/definitions/Law"}, tied]}
     uncertain["additionalProperties"] = {"$ref": "#/definitions/Entry"}
@@ -158,7 +160,13 @@ def _fixed(model: Model, name: str) -> Schema:
     default = {"default": nominal} if isfinite(nominal) else {}  # JSON has no infinity
     limits = _limits(model.parameter(name).bounds)
     number = {"type": ["number", "string"], "pattern": SHAPE}  # limits are of numbers alone
-    return {**number, **limits, **default, **_texts(model, name)}
+    return {**_with_source({**number, **limits}), **default, **_texts(model, name)}
+
+
+def _with_source(number: Schema) -> Schema:
+    """Return the schema of a number that may be in a table with its source."""
+    entries = {"value": number, "source": {"type": "string"}}
+    return {"anyOf": [number, {"type": "object", "required": ["value"], **_table(entries)}]}
 
 
 def _setting(model: Model, name: str, kind: Any) -> Schema:

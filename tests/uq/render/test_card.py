@@ -354,6 +354,10 @@ def test_a_law_of_few_values_and_a_fixed_value_without_source_are_pointed_out():
     shown = card(computed(study_of(tables)))
     assert f"! {clause}" in str(shown) and clause in shown.card.json["checks"]
     tables["uncertain"]["rate"]["values"] = [1e-9 * (1 + 0.01 * i) for i in range(100)]
+    tables["fixed"]["depth"] = {"value": 2e-3, "source": "drawing 7: given"}
+    result = computed(study_of(tables))
+    assert card(result).card.sources == ""
+    assert result["depth"].attrs["source"] == "drawing 7: given"
     tables["fixed"]["depth"] = "250 um"  # nominal: it has the source of that
     assert card(computed(study_of(tables))).card.sources == ""
     del tables["fixed"]

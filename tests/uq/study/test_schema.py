@@ -108,6 +108,7 @@ def test_the_fault_is_where_it_is(validator, changes, place):
         {"analysis": {"thresholds": {"y": [1, "5 %"]}, "wanted": {"y": "below"}}},
         {"uncertain": {"x3": {"distribution": "lognormal", "median": 1, "sigma": 0.1}}},
         {"settings": {}, "fixed": {}},
+        {"uncertain": {"x3": None}, "fixed": {"x3": {"value": 1.0, "source": "rig: measured"}}},
         {"design": {"method": "imported", "file": "rows.csv", "samples": None}},
     ],
 )
@@ -178,8 +179,9 @@ def test_a_bound_at_infinity_is_none(mounted, fixed, places):
 def test_what_is_infinite_is_left_out(mounted):
     _, entries = mounted
     kept = {
-        name: {key: entry[key] for key in ("minimum", "maximum", "default") if key in entry}
+        name: {key: limits[key] for key in ("minimum", "maximum", "default") if key in limits}
         for name, entry in entries.items()
+        for limits in [entry | entry["anyOf"][0]]
     }
     assert kept == {
         "mount_stiffness": {"minimum": 1e4},

@@ -1,9 +1,12 @@
 """Quantities with units in [fixed], laws and settings, and hints on probable mistakes of typing."""
 
+import pickle
+
 import pytest
 
 from uq.errors import InputError
 from uq.study.definition import study_from_text
+from uq.study.file import source_of_fixed
 from uq.study.hints import hints
 
 TEXT = """
@@ -81,6 +84,37 @@ def test_settings_may_have_units():
     assert study.settings.depths == (1.25e-4, 2.5e-4)
     assert study.settings.horizon == 9 * 31557600
     assert study.uncertain["initial_gap"].lower == pytest.approx(2e-4, rel=1e-15)
+
+
+SOURCED = '{value = "2 mm", source = "drawing 7: given"}'
+
+
+def test_a_fixed_value_may_state_its_source():
+    study = study_from_text(changed('"2 mm" #', f"{SOURCED} #"))
+    plain = study_from_text(TEXT)
+    assert study.fixed == plain.fixed and study.identity == plain.identity
+    assert source_of_fixed(study.fixed["depth"]) == "drawing 7: given"
+    assert source_of_fixed(plain.fixed["depth"]) == ""
+    assert 'depth = {value = 0.002, source = "drawing 7: given"} # as drawn' in study.text
+    again = pickle.loads(pickle.dumps(study_from_text(study.text).fixed))
+    assert again == plain.fixed and source_of_fixed(again["depth"]) == "drawing 7: given"
+
+
+@pytest.mark.parametrize(
+    ("entry", "problem"),
+    [
+        ('{valu = "2 mm"}', "has no key 'valu'; did you mean 'value'? (allowed: value, source)"),
+        ('{source = "drawing 7"}', "must be a number, or {value = 1.5, source = "),
+        ("{value = 1, source = 7}", "must be a number, or {value = 1.5, source = "),
+        ('{value = "2 kg"}', "the unit 'kg' does not fit 'depth'"),
+        ("{value = -1.0}", "must be within 0.0 to"),
+    ],
+)
+def test_a_table_of_a_fixed_value_has_a_value_and_a_source_alone(entry, problem):
+    with pytest.raises(InputError) as caught:
+        study_from_text(changed('"2 mm" #', f"{entry} #"))
+    (fault,) = caught.value.lines
+    assert fault.startswith("study: [fixed] depth = ") and problem in fault
 
 
 def test_a_parameter_on_the_command_line_may_have_its_unit(uq):

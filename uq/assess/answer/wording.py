@@ -13,7 +13,7 @@ from uq.result.element import Element
 from uq.result.result import Result
 from uq.sampling.listed_values import Empirical
 from uq.stats.estimate import Estimate
-from uq.study.file import Tied
+from uq.study.file import Tied, source_of_fixed
 from uq.study.input_checks import laws_of
 from uq.text.numbers import (
     capitalized,
@@ -71,7 +71,9 @@ def _states_source(result: Result, name: str) -> bool:
     """Return whether a parameter has a source: a value in [fixed] replaces the sourced one."""
     study = result.study
     return (
-        bool(study.uncertain[name].source) if name in study.uncertain else name not in study.fixed
+        bool(study.uncertain[name].source)
+        if name in study.uncertain
+        else name not in study.fixed or bool(source_of_fixed(study.fixed[name]))
     )
 
 
@@ -97,8 +99,9 @@ def without_source(result: Result) -> list[str]:
     ds = result.dataset
     return [
         name
-        for name in result.study.fixed
+        for name, value in result.study.fixed.items()
         if name in ds.variables
+        and not source_of_fixed(value)
         and not np.array_equal(ds[name].attrs.get("nominal", ()), ds[name].values)
     ]
 
