@@ -215,7 +215,9 @@ def lifetime(
         texts.append(words)
         colours.append(colour)
         for which, alpha, meaning in _BANDS:
-            low, high = 1 - curve[f"{which}high"], 1 - curve[f"{which}low"]
+            low, high = (1 - curve[which + end].values for end in ("high", "low"))
+            # The last interval is that of later times, which are not drawn.
+            low[-1:], high[-1:] = low[-2:][:1], high[-2:][:1]
             if np.isfinite(low).any():
                 band: Any = {"step": "post", "color": BAND, "alpha": alpha, "lw": 0.6, "zorder": 1}
                 panel.fill_between(time, low, high, label="_" * (i > 0) + meaning, **band)

@@ -59,9 +59,17 @@ def entitle(
     axes.set_title(textwrap.fill(text, 44).replace("\u00a0", " "), loc="left")
 
 
+_LONG = 0.9  # quantile of times that their axis has the unit of
+
+
 def display_unit(units: str, values: Floats) -> ReadableUnit:
-    """Return the unit of an axis for these values of an output."""
-    return unit_of(units, typical(values))
+    """Return the unit of an axis for these values of an output.
+
+    Times take the unit of long ones: seconds would be far from thresholds in hours.
+    """
+    ends = values[np.isfinite(values)]
+    size = np.quantile(ends, _LONG) if units == "s" and len(ends) else typical(values)
+    return unit_of(units, float(size))
 
 
 def input_axis(axes: Axes, result: Result, name: str, width: int = 44) -> float:

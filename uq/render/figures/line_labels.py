@@ -20,6 +20,7 @@ _LETTER = 0.55 * _SIZE  # typical width of a letter [points]
 _LINE = 9.0  # distance of two lines of labels [points]
 _PANEL = 0.72  # width of a panel relative to its figure
 _WRAPPED = 42  # characters of a line of a note
+_APART = 0.03  # least distance of curves that can be told apart, relative to the panel
 _ENOUGH = 0.25  # room for a label of a curve, relative to the panel
 _TITLE = 6.0  # distance of a title above the frame [points]
 
@@ -110,7 +111,13 @@ def label_two_curves(
     """
     if len(curves) != 2 or max(map(len, texts)) > 16 or not all(len(x) > 1 for x, _ in curves):
         return False
+    if any(y.max() < 0.84 for _, y in curves):  # the labels are at heights up to this
+        return False
     middles = [float(np.interp(0.5, y, x)) for x, y in curves]
+    to_axes = axes.transData + axes.transAxes.inverted()
+    low, high = (to_axes.transform((x, 0))[0] for x in sorted(middles))
+    if high - low < _APART:
+        return False
     first = int(np.argmin(middles))
     places = {first: ((0.72, 0.6, 0.84), "right", -4), 1 - first: ((0.28, 0.4, 0.08), "left", 4)}
     for i, (heights, side, shift) in places.items():

@@ -104,10 +104,20 @@ def _short(value: float, form: str) -> str:
 
 
 class _PlainLog(LogFormatter):
-    """Formatter with plain numbers instead of TeX, at the ticks that matplotlib would label."""
+    """Formatter with plain numbers instead of TeX, at the ticks that matplotlib would label.
+
+    Of a decade it labels 1, 2 and 5 at most if the axis is longer: others would overlap.
+    """
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        return _short(x, "g" if 1e-3 <= x < 1e5 else ".0e") if super().__call__(x, pos) else ""
+        assert self.axis is not None
+        low, high = self.axis.get_view_interval()
+        digit, alike = f"{x:e}"[0], x
+        if high > 10 * low > 0:
+            if digit not in "125":
+                return ""
+            alike = 0.4 * x if digit == "5" else x  # matplotlib labels 2, 3, 4 and 6
+        return _short(x, "g" if 1e-3 <= x < 1e5 else ".0e") if super().__call__(alike, pos) else ""
 
 
 def logarithmic(axes: Axes, vertical: bool = False) -> None:

@@ -10,8 +10,10 @@ from matplotlib.figure import Figure
 
 from uq import plots
 from uq.render.figures.catalogue import file_name
+from uq.render.figures.elements_plot import display_unit
 from uq.render.figures.figure import lay_out
-from uq.render.figures.panel import roomy
+from uq.render.figures.line_labels import label_two_curves
+from uq.render.figures.panel import logarithmic, roomy
 from uq.render.figures.words import as_label, powers
 
 
@@ -149,3 +151,33 @@ def test_the_legend_of_many_indices_of_few_inputs_has_room():
     labels = [text.get_text() for text in legend.get_texts()]
     assert len(labels) == len(set(labels)) == 5
     assert figure.axes[0].get_window_extent().height > 30
+
+
+def test_a_logarithmic_axis_of_more_than_a_decade_labels_1_2_and_5():
+    figure = Figure((3, 2))
+    axes = figure.subplots()
+    axes.plot([0.18, 9.5], [0, 1])
+    logarithmic(axes)
+    axes.set_xlim(0.18, 9.5)
+    figure.draw_without_rendering()
+    labels = axes.xaxis.get_ticklabels(which="both")
+    shown = [label.get_text() for label in labels if label.get_text()]
+    assert sorted(shown, key=float) == ["0.1", "0.2", "0.5", "1", "2", "5", "10"]
+
+
+@pytest.mark.parametrize(
+    ("values", "unit"), [(np.geomspace(500.0, 3e4, 99), "hours"), (np.linspace(1, 99, 99), "s")]
+)
+def test_an_axis_of_times_has_the_unit_of_long_ones(values, unit):
+    assert display_unit("s", values).name == unit
+
+
+def test_curves_are_labelled_only_where_the_labels_say_which_is_which():
+    axes = Figure().subplots()
+    axes.set_xlim(0, 10)
+    time = np.linspace(0, 10, 50)
+    colours, texts = ["black", "gray"], ["57 µm", "228 µm"]
+    early, late = np.clip(time / 4, 0, 1), np.clip(time / 8, 0, 1)
+    assert label_two_curves(axes, [(time, early), (time, late)], texts, colours, [])
+    for other in (early, 0.1 * early):  # the same curve, and one that ends low
+        assert not label_two_curves(axes, [(time, early), (time, other)], texts, colours, [])
