@@ -371,7 +371,7 @@ def assumptions(result: Result) -> dict[str, Fact]:
     return {
         key: Fact(
             {"inputs": names, "of": len(total)},
-            words=f"{clause}: {joined([called(name) for name in names])}.",
+            words=f"{clause}: {joined(_first_named(names))}.",
         )
         for key, (clause, names, total) in groups.items()
         if names
@@ -381,6 +381,17 @@ def assumptions(result: Result) -> dict[str, Fact]:
 def _counted_with_verb(names: Sized, total: Sized, noun: str) -> str:
     verb = "is" if len(names) == 1 else "are"
     return f"{len(names)} of {counted(len(total), noun)} {verb}"
+
+
+_MOST_NAMED = 12
+"""Number of inputs that a sentence names; of more, it names the first half of these."""
+
+
+def _first_named(names: Sequence[str]) -> list[str]:
+    if len(names) <= _MOST_NAMED:
+        return [called(name) for name in names]
+    first = [called(name) for name in names[: _MOST_NAMED // 2]]
+    return [*first, f"{len(names) - len(first)} others"]
 
 
 def _marks(result: Result, role: str) -> dict[str, str]:
