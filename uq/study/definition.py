@@ -25,7 +25,15 @@ from uq.sampling.law import Law
 from uq.sampling.named_values import read_settings
 from uq.study.changes import change, study_text
 from uq.study.checks import design_faults, model_faults
-from uq.study.file import NAME, AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
+from uq.study.file import (
+    NAME,
+    AnalysisTable,
+    DependenceTable,
+    DesignTable,
+    StudyFile,
+    Tied,
+    number_of_fixed,
+)
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
 from uq.study.installed_models import find_model, model_at
 from uq.study.reading import in_units_of, parse, shape_faults, sound_entries, with_numbers
@@ -421,7 +429,9 @@ def _entries(table: dict[str, Any], path: tuple[str, ...] = ()) -> Iterator[tupl
             or (path[:1] == ("uncertain",) and name == "source")
         ):
             continue
-        if isinstance(value, dict) and len(path) < 2:
+        if path == ("fixed",):
+            yield place, number_of_fixed(value)
+        elif isinstance(value, dict) and len(path) < 2:
             yield from _entries(value, place)
         else:
             yield place, value

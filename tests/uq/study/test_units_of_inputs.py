@@ -5,7 +5,7 @@ import pickle
 import pytest
 
 from uq.errors import InputError
-from uq.study.definition import study_from_text
+from uq.study.definition import study_from_text, what_changed
 from uq.study.file import source_of_fixed
 from uq.study.hints import hints
 
@@ -96,6 +96,8 @@ def test_a_fixed_value_may_state_its_source():
     assert source_of_fixed(study.fixed["depth"]) == "drawing 7: given"
     assert source_of_fixed(plain.fixed["depth"]) == ""
     assert 'depth = {value = 0.002, source = "drawing 7: given"} # as drawn' in study.text
+    other = study_from_text(changed('"2 mm" #', "0.003 #"))
+    assert what_changed(study.text, "1", other) == "[fixed] depth = 0.002, now 0.003"
     again = pickle.loads(pickle.dumps(study_from_text(study.text).fixed))
     assert again == plain.fixed and source_of_fixed(again["depth"]) == "drawing 7: given"
 
