@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,6 +33,7 @@ from uq.contract import Status
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PLAIN
 from uq.stats import estimate_json
+from uq.study.file import Tied
 from uq.text.numbers import capitalized, counted, grouped, percent, rows_in_words
 from uq.text.units import readable
 
@@ -202,11 +204,15 @@ def _share_of(ranking: Ranking, is_life: bool) -> str:
         return ranking.target.replace("regime=", "")
     if "logarithm" in ranking.share_of:
         return "log life" if is_life else "logarithm"
-    return "variance"
+    return "rank" if "rank" in ranking.share_of else "variance"
 
 
 def _assumptions(result: Result, assumed_causes: Sequence[str]) -> str:
-    laws = [name for name in result.study.uncertain if name in result.dataset.variables]
+    laws = [
+        name
+        for name, law in result.study.uncertain.items()
+        if name in result.dataset.variables and not isinstance(law, Tied)
+    ]
     assumed = [name for name in laws if mark_of(result, name) == ASSUMED]
     if not assumed:
         return ""
@@ -296,7 +302,11 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
     else:
         yield f"enough {plural}" + " but for the invalid ones" * bool(answer.failed)
     if enough.errors is not None:
-        yield f"numerical error exceeds sampling error (of the {enough.errors.estimate})"
+        numerical = enough.unit.text(enough.errors.numerical, inf)
+        yield (
+            f"numerical error of the {enough.errors.estimate}, up to {numerical}, exceeds its"
+            " sampling error"
+        )
     error = {} if lead is None or lead.own_error is None else lead.own_error.members
     if error.get("rows_missing_it"):
         share, accuracy = percent(error["rows_missing_it"]), 100 * error["accuracy"]
@@ -315,7 +325,7 @@ def _next(result: Result, answer: Answer) -> Iterator[str]:
             case "measure":
                 yield f"measure {words}"
             case "tighten" if entry.tightened is not None and not entry.tightened.reason:
-                yield f"tighten {words}"
+                yield f"tighten {words}{_tied_to(result, entry.inputs)}"
             case "chance":
                 yield f"expect little of tolerances: {_chance(answer)}"
             case "source":
@@ -335,6 +345,16 @@ def _next(result: Result, answer: Answer) -> Iterator[str]:
                 yield f"keep {words} {place}: there {there}"
             case "nothing" if len(advice) == 1:
                 yield "nothing: the question is settled"
+
+
+def _tied_to(result: Result, inputs: Sequence[str]) -> str:
+    """Return the inputs that equal one of these in every row, in words after it; or ""."""
+    tied = [
+        name
+        for name, law in result.study.uncertain.items()
+        if isinstance(law, Tied) and law.equals in inputs
+    ]
+    return f" (with {called_together(tied)}, which equals it)" if tied else ""
 
 
 def _chance(answer: Answer) -> str:

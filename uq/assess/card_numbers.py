@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import inf, isfinite, nan
+from math import inf, isfinite, isnan, nan
 from typing import Any
 
 from uq.assess.answer.answer_sentences import Answer
@@ -53,6 +53,11 @@ class Headline:
     leads: bool = False
 
     @property
+    def is_range(self) -> bool:
+        """Whether it is a range of values, not an estimate."""
+        return self.shown is not None and isnan(self.estimate.value)
+
+    @property
     def json(self) -> dict[str, Any]:
         """Key, label, numbers and unit."""
         numbers = estimate_json.numbers(self.estimate)
@@ -85,7 +90,15 @@ def headlines(findings: Findings, answer: Answer) -> Iterator[Headline]:
 def _of_event(quantity: Quantity, event: Event) -> Headline:
     key = key_of("quantities", quantity.name, "events", event.name, "share", verb="answer")
     label = event.predicate.removesuffix(" in magnitude").replace("exceed", "beyond")
-    return Headline(key, label, event.share, "1", None, leads=not quantity.is_life)
+    share = with_failed(event.share, event.failed)
+    return Headline(key, label, share, "1", None, leads=not quantity.is_life)
+
+
+def with_failed(estimate: Estimate, failed: Estimate | None) -> Estimate:
+    """Return an estimate whose interval allows for invalid rows at best and at worst."""
+    if failed is None or not estimate.has_interval:
+        return estimate
+    return replace(estimate, low=failed.low, high=failed.high)
 
 
 def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
@@ -117,7 +130,8 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
     if isfinite(tolerance_bound.lower) or isfinite(tolerance_bound.upper):
         return
     quantiles = zip(tolerance_bound.probabilities, tolerance_bound.quantiles, bounds, strict=True)
-    for p, estimate, side in quantiles:
+    for (p, estimate, side), failed in zip(quantiles, tolerance_bound.failed, strict=True):
+        estimate = with_failed(estimate, failed)
         if isfinite(estimate.value):
             line = Headline(
                 key(f"{side}_quantile"),
@@ -147,8 +161,15 @@ def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Head
         label=line.label + WITH_ERRORS,
         estimate=Estimate(moved),
         towards=towards,
-        note=f"the same, {noun_of(tolerance_bound)} {by} their numerical errors",
+        note=f"{noun_of(tolerance_bound)} {by} their numerical errors",
     )
+
+
+def _failed_of_median(findings: Findings, quantity: Quantity) -> Estimate | None:
+    """Return the bounds of the median with invalid rows at best and at worst; None without any."""
+    described = findings.summary.outputs.get(quantity.name)
+    statistic = None if described is None else described.find("quantiles", "0.5")
+    return None if statistic is None else statistic.best.failed
 
 
 def _does(tolerance_bound: ToleranceBound, side: str) -> str:
@@ -171,16 +192,17 @@ def _of_range(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
 
     if isfinite(likely.median.value):
         label = "median magnitude" if likely.of_magnitude else "median"
-        yield Headline(key("median"), label, likely.median, unit, shown)
+        middle = with_failed(likely.median, _failed_of_median(findings, quantity))
+        yield Headline(key("median"), label, middle, unit, shown)
     for life in quantity.b_lives:
         if life.key[-1] == "B10" and isfinite(life.estimate.value):
             path = key_of("outputs", quantity.name, *life.key)
             label = "10 % quantile" if findings.result.outputs[quantity.output].success else "B10"
-            yield Headline(path, label, life.estimate, unit, shown)
+            yield Headline(path, label, with_failed(life.estimate, life.failed), unit, shown)
     low, high = likely.low.value, likely.high.value
     if isfinite(low) and isfinite(high):
         yield Headline(key("low"), "90 % between", Estimate(nan, low, high), unit, shown)
-    if likely.never.value > 0:
+    if likely.never.value > 0 or likely.never.low > 0:
         yield Headline(key("never"), f"never {likely.ends}", likely.never, "1", None)
     described = findings.summary.outputs.get(quantity.name) if likely.of_magnitude else None
     mean = None if described is None else described.find("mean")

@@ -223,10 +223,15 @@ class Sample(ABC):
         return bounds
 
     def never_ending(self) -> Estimate:
-        """Estimate the probability that a life never ends; unknown where censored rows may not."""
+        """Estimate the probability that a life never ends.
+
+        Only an interval is known where censored rows may not end either.
+        """
         element = self.element
+        never, may_be, kept = element.never, element.never | element.censored, ~element.failed
         if element.censored.any() and not element.declared.never_known_at_once:
-            return Estimate(reason="censored rows may never end")
+            low, high = (share_of(mask[kept], self.dependence[kept]) for mask in (never, may_be))
+            return Estimate(nan, low.low, high.high, reason="censored rows may never end")
         return self._share_never_ending(~element.failed)
 
     def _share_never_ending(self, kept: Mask) -> Estimate:

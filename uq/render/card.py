@@ -226,7 +226,7 @@ def _label(line: Headline, card: Card) -> str:
 
 def label_of(line: Headline, card: Card) -> str:
     """Return the label of a number as it is shown."""
-    if isnan(line.estimate.value):
+    if line.is_range:
         return printed(f"90 % of {card.row_name[1]}")
     *words, last = line.label.split(" ")
     return printed(" ".join([*words, _BRIEF.get(last, last)]))
@@ -236,8 +236,12 @@ def number_of(line: Headline) -> str:
     """Return the number with its unit; of a range, both ends."""
     estimate = line.estimate
     if line.shown is None:
+        if isnan(estimate.value):
+            return printed(percent_interval(estimate.low, estimate.high))
         return printed(percent(estimate.value))
     unit = _brief(line.shown)
+    if line.label.endswith(f"life{WITH_ERRORS}") and estimate.value <= 0:
+        return "none"  # the errors are as large as the values
     if isnan(estimate.value):
         return printed(unit.between(estimate.low, estimate.high))
     return printed(unit.text(estimate.value, line.towards))
@@ -358,7 +362,7 @@ def _law(cause: LeadingInput) -> str:
     if cause.tightened is None:
         return ""
     if ";" in cause.tightened.law:
-        return "each input"
+        return "both halved" if len(cause.contribution.inputs) == 2 else "all halved"
     stated = cause.tightened.law
     with_dashes = re.sub(r"(?<![-.\d])(\d\S*) to (?=\d)", "\\1–", stated)
     for law in (stated, with_dashes):
@@ -412,6 +416,8 @@ def _tightened(cause: LeadingInput) -> str:
         text, low, high = _same_decimals(*map(unit.number, after.numbers))
         text = beside(text, unit.name) if len(unit.name) <= _LONG else text
         between = f"{low} to {high}"
+    if tolerance.harms:
+        return f"{text}, worse"
     return f"{text} ({between})" if after.has_interval else text
 
 

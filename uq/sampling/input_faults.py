@@ -95,6 +95,8 @@ def fault_of(
         name_kind, names = allowed_at(path)
         return InputFault(path, unknown(name_kind, str(path[-1]), names), error["input"])
     reason = _REASONS.get(kind, "").format(**error.get("ctx", {}))
+    if kind == "int_type" and isinstance(error["input"], str):
+        reason = "must be a whole number, without quotes"
     return InputFault(path, (reason or error["msg"]) + _as_share(error), error["input"])
 
 

@@ -60,13 +60,36 @@ def parse(text: str, source: str) -> dict[str, Any]:
     try:
         data = read_toml(text)
     except (ValueError, OverflowError, RecursionError) as error:
-        raise InputError(f"{source}: not valid TOML: {one_line(error)}") from error
+        problem = f"not valid TOML: {one_line(error)}{_remedy(text, str(error))}"
+        raise InputError(f"{source}: {problem}") from error
     for name, table in (("", data), *data.items()):
         if isinstance(table, dict) and len(table) > _MOST_ENTRIES:
             where = f"[{written_key(name)}]" if name else "it"
             problem = f"has {len(table)} entries (allowed: at most {_MOST_ENTRIES})"
             raise InputError(f"{source}: {where} {problem}")
     return data
+
+
+_AT_LINE = re.compile(r"at line (\d+)")
+_COMMA = re.compile(r"=\s*([-+]?\d+),(\d+)\s*(?:#|$)")
+_UNIT = re.compile(r"=\s*([-+\d.]+(?:e[-+]?\d+)?\s*[^\W\d_][^,}#\n]*)")
+_WORD = re.compile(r"=\s*([^\W\d_][\w .-]*?)\s*(?:[,}#]|$)")
+
+
+def _remedy(text: str, problem: str) -> str:
+    """Return how to mend the line of a fault of syntax, or ""."""
+    match, lines = _AT_LINE.search(problem), text.splitlines()
+    if match is None or not 1 <= int(match[1]) <= len(lines):
+        return ""
+    line = lines[int(match[1]) - 1]
+    if comma := _COMMA.search(line):
+        return f"; numbers have a decimal point: {comma[1]}.{comma[2]}"
+    if line.startswith("[") and "]" not in line:
+        return f"; close the bracket: {line.strip()}]"
+    for pattern in (_UNIT, _WORD):
+        if (word := pattern.search(line)) and word[1] not in ("true", "false", "inf", "nan"):
+            return f'; text has quotes: "{word[1].strip()}"'
+    return ""
 
 
 def shape_faults(data: dict[str, Any]) -> list[InputFault]:

@@ -21,7 +21,7 @@ from uq.text.literals import toml
 
 _DESIGN: dict[str, Any] = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3
-_SOURCE = "example: replace with your own"
+_SOURCE = "assumed: an example, replace it with your own"
 
 
 def template(

@@ -7,16 +7,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from computed import asking, computed, kinds, linear, study_of, with_output, with_status
+from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_output, with_status
 from nested_studies import nested_result
 
 import uq as api
 from benchmarks.cards import cards_on_page
 from uq.assess.answer.sufficiency import needed, rounded_size, size_for
 from uq.assess.answer.wording import called_together
+from uq.contract import Status
 from uq.render.card import SHORT, WIDTH, card, cause_columns, lines_of
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
+from uq.stats.intervals import share_interval
 from uq.text.numbers import counted
 
 STUDIES = Path(__file__).parents[3] / "studies"
@@ -285,11 +287,68 @@ def test_the_bound_with_numerical_errors_stands_beside_the_bound():
     lines = str(shown).splitlines()
     (first,) = (i for i, line in enumerate(lines) if "95/95 life" in line)
     assert re.match(
-        "  with errors  +[0-9.]+ h    the same, lives less their numerical errors$",
-        lines[first + 1],
+        "  with errors  +[0-9.]+ h    lives less their numerical errors$", lines[first + 1]
     )
     exact = card(with_numerical_errors(1e-9, tolerance=asked))
     assert "numerical" not in str(exact)
+
+
+def test_errors_as_large_as_the_lives_leave_no_bound():
+    asked = {"coverage": 0.95, "confidence": 0.95}
+    ds = with_numerical_errors(1.5, tolerance=asked)
+    assert re.search(r"with errors +none  +lives less their numerical errors", str(card(ds)))
+    assert re.search(r"error of the m\w+, up to\s+[\d.]+ \w+,\s+exceeds", str(card(ds)))
+
+
+def test_laws_are_counted_without_inputs_that_equal_another_and_advice_names_these():
+    laws = {"x1": {**UNIFORM}, "x3": {**UNIFORM}, "x4": {"equals": "x3"}}
+    for law in (laws["x1"], laws["x3"]):
+        law["source"] = "assumed"
+    tables = {
+        "study": {"name": "tied", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 2000, "seed": 1},
+        "uncertain": laws,
+        "analysis": {"outputs": ["y"], "wanted": {"y": "below"}},
+    }
+    shown = card(computed(study_of(tables))).card
+    assert shown.assumptions == "2 of 2 laws assumed"
+    assert "tighten x3 (with x4, which equals it)" in shown.next
+
+
+def test_the_share_that_never_ends_is_a_range_where_censored_rows_may_not_end():
+    rng = np.random.default_rng(4)
+    values, censored = rng.lognormal(10, 1, 400), np.arange(400) % 10 == 1
+    values[::10] = np.inf
+    ds = with_output(linear(samples=400), "life", values, kind="lifetime", censored=censored)
+    shown = asking(ds, outputs=["life"])
+    shown["life"].attrs["never_known_at_once"] = 0
+    (line,) = (line for line in card(shown).card.headline if line.label.startswith("never"))
+    low, high = share_interval(values == np.inf)[0], share_interval(censored | np.isinf(values))[1]
+    assert np.isnan(line.estimate.value)
+    assert (line.estimate.low, line.estimate.high) == (low, high)
+    assert re.search(r"never fail +\d[\d.]* to \d[\d.]* %", str(card(shown)))
+
+
+def test_intervals_of_a_card_allow_for_invalid_rows():
+    ds = life(np.random.default_rng(5).lognormal(10, 1, 400), thresholds={"life": [3e4]})
+    without = ds.copy(deep=True)
+    without["life"][:40] = np.nan
+    failed = card(with_status(without, slice(0, 40), Status.RAISED)).card
+    whole = {line.label: line.estimate for line in card(ds).card.headline}
+    for line in failed.headline:
+        if line.estimate.has_interval and not line.is_range:
+            width = line.estimate.high - line.estimate.low
+            assert width > 1.3 * (whole[line.label].high - whole[line.label].low), line.label
+
+
+def test_a_smaller_scatter_that_makes_matters_worse_is_marked():
+    ds = linear(samples=2000, analysis={"outputs": ["y"], "wanted": {"y": "below"}})
+    base = card(ds).card
+    first = base.causes[0]
+    assert first.tightened is not None and first.tightened.helps
+    worse = replace(first.tightened, wants_more=True)
+    shown = shown_with(base, causes=(first._replace(tightened=worse),))
+    assert any(line.endswith(", worse") for line in shown)
 
 
 def test_a_quantile_in_place_of_a_bound_comes_with_its_numerical_errors():

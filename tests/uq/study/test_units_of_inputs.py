@@ -119,6 +119,27 @@ def test_a_table_of_a_fixed_value_has_a_value_and_a_source_alone(entry, problem)
     assert fault.startswith("study: [fixed] depth = ") and problem in fault
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "remedy"),
+    [
+        ('life = "0.1 y"', "life = 12 days", '; text has quotes: "12 days"'),
+        ('name = "pads"', "name = pads", '; text has quotes: "pads"'),
+        ("5e-9]", "5e-9]\nmedian = 0,157", "; numbers have a decimal point: 0.157"),
+        ("[analysis]", "[analysis", "; close the bracket: [analysis]"),
+    ],
+)
+def test_a_fault_of_syntax_names_its_remedy(old, new, remedy):
+    with pytest.raises(InputError) as caught:
+        study_from_text(changed(old, new))
+    assert caught.value.lines[0].startswith("study: not valid TOML: ")
+    assert caught.value.lines[0].endswith(remedy)
+
+
+def test_a_whole_number_in_quotes_is_no_whole_number():
+    with pytest.raises(InputError, match="must be a whole number, without quotes"):
+        study_from_text(changed("samples = 100", 'samples = "100"'))
+
+
 def test_a_parameter_on_the_command_line_may_have_its_unit(uq):
     given = ("simulate", "exponential-wear", "--json", "--set")
     assert uq(*given, "depth=2 mm").out == uq(*given, "depth=0.002").out

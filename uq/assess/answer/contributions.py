@@ -183,6 +183,7 @@ ALIKE = 0.5
 _STEPS = (0.1, 0.01, 0.001)
 
 
+_SMALL_CHANGE = 0.1  # of a probability
 _WITHIN = 2.0  # standard deviations that a step may span: a change within the scatter of the input
 
 
@@ -258,7 +259,10 @@ def _change(
         return AverageEffect(effect.direction, verbs=verbs)
     amount = ""
     if effect.logarithmic:
-        size = next((s for s in _STEPS if log1p(s) <= _WITHIN * effect.sd), _STEPS[-1])
+        most = _WITHIN * effect.sd
+        if form == "P":  # a slope holds for small changes of a probability alone
+            most = min(most, _SMALL_CHANGE / max(abs(effect.slope.value), _SMALL_CHANGE))
+        size = next((s for s in _STEPS if log1p(s) <= most), _STEPS[-1])
         step, by = f"{100 * size:g} %", log1p(size)
     else:
         step, by, amount = "one standard deviation", effect.sd, of_input.text(effect.sd)

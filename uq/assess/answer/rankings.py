@@ -271,7 +271,16 @@ def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str])
         first, second = groups[0][0], groups[0][MOST_TIED]
         apart = max(first.index.value - second.index.value, GOAL * _scale(first, kind) / 2)
         factor = (first.apart(second) / apart) ** 2
-        reason, is_flat = f"the order of {names} is not settled", False
+        with_shares = names
+        if kind.unit == "variance":
+            with_shares = choices(
+                (
+                    f"{called(member.name)} ({max(100 * member.index.value, 0):.0f} %)"
+                    for member in groups[0]
+                ),
+                MOST_TIED,
+            )
+        reason, is_flat = f"the order of {with_shares} is not settled", False
         if factor <= 1:  # the rows distinguish larger differences
             is_flat = kind.unit == "variance" and first.index.value < SMALL
             reason, factor = _alike(names, first, kind, is_flat), nan

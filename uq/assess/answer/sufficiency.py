@@ -30,6 +30,8 @@ BOUND = 0.1
 """A tolerance bound is settled if it is within this fraction of the quantile that it bounds (of a
 life), or of the likely range."""
 
+_FINEST = 10.0  # factor on the accuracy beyond which errors hardly follow it
+
 MOST = 100.0
 """Largest factor on the sample size that is predicted from its root."""
 
@@ -277,6 +279,8 @@ def _errors(findings: Findings, quantity: Quantity) -> Errors | None:
 def _finer_setting(result: Result, quantity: Quantity, errors: Errors) -> str:
     """Return the setting of the accuracy with a value that equals the sampling error; "" if none.
 
+    None either where the errors are many times the accuracy: they do not follow it.
+
     At most half the present value, since errors are rarely as large as the accuracy allows.
     """
     setting = result.outputs[quantity.output].accuracy
@@ -284,6 +288,8 @@ def _finer_setting(result: Result, quantity: Quantity, errors: Errors) -> str:
     if not setting or not asked or not isfinite(errors.sampling):
         return ""
     finer = asked * min(errors.sampling / errors.numerical, 0.5)
+    if finer < asked / _FINEST:
+        return ""
     digit = 10.0 ** floor(log10(finer))
     return f"set {setting} = {floor(finer / digit) * digit:.1g}"
 

@@ -221,6 +221,8 @@ def _words(rows: Result, name: str, law: Law, arguments: Arguments) -> str:
     unit = unit_of_input(rows, name)
 
     def words(key: str, value: Any) -> str:
+        if isinstance(value, str):
+            return f"{key} {value}"
         is_pure = law.times is not None or key in law.pure
         size, name = (1.0, "") if is_pure else (unit.per, unit.name)
         if isinstance(value, list | tuple):

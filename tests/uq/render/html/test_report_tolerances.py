@@ -59,6 +59,23 @@ def scaled(uncertain, dependence=None, **design):
     return computed(study_of(tables, "sample_models:SCALED"))
 
 
+def test_a_law_with_a_text_among_its_arguments_has_a_slider():
+    tables = {
+        "study": {"name": "rods", "model": "gap-wear"},
+        "design": {"method": "monte-carlo", "samples": 200, "seed": 3},
+        "uncertain": {
+            "wear_coefficient": {
+                "distribution": "wear-coefficient",
+                "pair": "inconel-600/inconel-600",
+            }
+        },
+    }
+    inside = rows_inside(Findings(Result(computed(study_of(tables)))), "rods.nc")
+    (slider,) = inside["tolerances"]["sliders"]
+    words = [stop["words"] for track in slider["tracks"] for stop in track["stops"]]
+    assert all("pair inconel-600/inconel-600" in text for text in words)
+
+
 def move(browser, name, track, place):
     """Move a slider of an input to a stop, counted from the lower end."""
     browser.value(
