@@ -130,6 +130,13 @@ class Params(NamedTuple):
     gravity: Annotated[float, Parameter(
         "g", "m s-2", "gravity on the unbalanced masses; 9.81 matters while the motors start",
         (0.0, 30.0), f"assumed: none, as in (13) to (23) of {PAPER}")] = 0.0
+    voltage_factor: Annotated[float, Parameter(
+        "u", "1", "voltage of the supply over its rated value; torques go with its square",
+        (0.03, 30.0), "assumed: rated voltage")] = 1.0
+    support_imbalance: Annotated[float, Parameter(
+        "kappa", "1",
+        "stiffness and damping of the right support less those of the left, over their sum",
+        (-0.95, 0.95), "assumed: equal supports")] = 0.0
 # fmt: on
 
 

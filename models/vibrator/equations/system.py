@@ -97,7 +97,7 @@ def rigid_machines(p: Rows) -> Rigid:
     """
     motors, m = motor_set(p), p.unbalanced_mass
     (x_1, y_1), (x_2, y_2), (x, y) = _shafts(p, motors)
-    sprung = p.body_mass + 2 * m
+    sprung, power = p.body_mass + 2 * m, p.voltage_factor * p.voltage_factor
     slip_1 = p.synchronous_speed_1 - p.breakdown_speed_1
     slip_2 = p.synchronous_speed_2 - p.breakdown_speed_2
     return Rigid(
@@ -114,8 +114,8 @@ def rigid_machines(p: Rows) -> Rigid:
         unbalance_2=p.unbalance_2,
         mobility_1=1 / (p.rotor_inertia + p.unbalance_1**2 / m),
         mobility_2=1 / (p.rotor_inertia + p.unbalance_2**2 / m),
-        torque_1=2 * p.overload_capacity * p.rated_torque_1 * slip_1,
-        torque_2=2 * p.overload_capacity * p.rated_torque_2 * slip_2,
+        torque_1=2 * p.overload_capacity * p.rated_torque_1 * slip_1 * power,
+        torque_2=2 * p.overload_capacity * p.rated_torque_2 * slip_2 * power,
         synchronous_speed_1=p.synchronous_speed_1,
         synchronous_speed_2=p.synchronous_speed_2,
         slip_1=slip_1,
@@ -129,6 +129,7 @@ def rigid_machines(p: Rows) -> Rigid:
         support_offset=p.support_offset,
         half_spacing=p.support_half_spacing,
         gravity=p.gravity,
+        support_lever=p.support_imbalance * p.support_half_spacing,
     )
 
 
