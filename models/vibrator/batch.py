@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from models.vibrator.lanes.machines import follows
 from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.service.life import lives
 from models.vibrator.start import exact, fast
 from models.vibrator.start.regimes import Outcome, wrapped
 from models.vibrator.theory import averaged
@@ -24,13 +25,13 @@ def batch(
     x : ndarray, shape (n, d)
         Parameters in the order of `Params`.
     seed : ndarray of uint64, shape (n,)
-        Not used: the machine is deterministic.
+        Of the times at which springs break; all else is deterministic.
     settings : Settings
 
     Returns
     -------
     outputs : dict of str to ndarray, shape (n,)
-        Those of `models.vibrator.parameters.OUTPUTS`, and ``synchronisation_time_censored``.
+        Those of `models.vibrator.parameters.OUTPUTS`, with ``*_censored`` beside each lifetime.
     status : ndarray of int8, shape (n,)
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
@@ -57,6 +58,14 @@ def batch(
         "synchronisation_time_censored": outcome.censored,
         "max_excursion": outcome.max_excursion,
         "regime": outcome.regime,
+    }
+    seen = outcome.regime, outcome.disphasing, status == Status.OUT_OF_BUDGET
+    life = lives(p, seed, *seen, quick, settings)
+    outputs |= {
+        "time_to_disphasing": life.time,
+        "time_to_disphasing_censored": life.censored,
+        "time_to_disphasing_error": life.error,
+        "time_to_disphasing_cause": life.cause,
     }
     if settings.instants:
         angle, speed_1, speed_2 = np.moveaxis(outcome.on_the_way, 2, 0)

@@ -24,6 +24,8 @@ BOLTED, IN_BODY = (
 )
 BEARING = "assumed: friction coefficient times half the bore, 0 to 3e-4 likely"
 REGIMES = ("locked-0", "locked-pi", "asynchronous", "captured", "one-stalled")
+CAUSES = ("angle", "lost-synchronisation", "spring-break", "beyond-horizon", "never")
+NO_AGEING = "assumed: no ageing; 2e7 to 2e8, 5,000 to 50,000 hours, likely"
 
 
 # fmt: off
@@ -137,6 +139,24 @@ class Params(NamedTuple):
         "kappa", "1",
         "stiffness and damping of the right support less those of the left, over their sum",
         (-0.95, 0.95), "assumed: equal supports")] = 0.0
+    ageing_time_1: Annotated[float, Parameter(
+        "t_1", "s", "time in which the friction of bearing 1 doubles", (1e3, inf),
+        NO_AGEING)] = inf
+    ageing_time_2: Annotated[float, Parameter(
+        "t_2", "s", "time in which the friction of bearing 2 doubles", (1e3, inf),
+        NO_AGEING)] = inf
+    ageing_exponent: Annotated[float, Parameter(
+        "nu", "1", "exponent of time by which the friction of bearings grows", (0.03, 30.0),
+        "assumed: 1 to 3 likely")] = 1.0
+    support_hardening: Annotated[float, Parameter(
+        "c", "1", "relative growth of the supports' stiffness per decade of time over 1000 hours",
+        (0.0, 1.0), "assumed: none; 0 to 0.15 likely of rubber")] = 0.0
+    spring_life: Annotated[float, Parameter(
+        "eta_s", "s", "Weibull scale of the times at which springs break", (1e3, inf),
+        "assumed: springs do not break")] = inf
+    spring_shape: Annotated[float, Parameter(
+        "b_s", "1", "Weibull shape of these times", (0.06, 60.0),
+        "assumed: fatigue, 1.5 to 4 likely")] = 2.0
 # fmt: on
 
 
@@ -183,6 +203,17 @@ class Settings:
             bounds=(0, 1000),
         ),
     ] = 0
+    angle_limit: Annotated[
+        float,
+        Setting("disphasing angle beyond which a machine has failed", "rad", bounds=(0.0, pi)),
+    ] = pi / 15
+    springs: Annotated[
+        int, Setting("springs at each side, which break one by one", bounds=(1, 100))
+    ] = 4
+    horizon: Annotated[
+        float,
+        Setting("times to disphasing beyond it are censored", "s", bounds=(1.0, 1e12)),
+    ] = 3.15576e9
     body_points: Annotated[
         tuple[tuple[float, float], ...],
         Setting(
@@ -248,5 +279,17 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "regime": Output(
         "1", "type of steady state reached from the start", "category", categories=REGIMES
+    ),
+    "time_to_disphasing": Output(
+        "s",
+        "time in service until the disphasing angle exceeds the limit or synchronisation is lost",
+        "lifetime",
+        never_known_at_once=False,  # after the horizon, supports may harden without consequence
+    ),
+    "time_to_disphasing_error": Output(
+        "s", "numerical error of the time to disphasing", may_be_undefined=True
+    ),
+    "time_to_disphasing_cause": Output(
+        "1", "why the time to disphasing ends", "category", categories=CAUSES
     ),
 }

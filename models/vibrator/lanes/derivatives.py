@@ -1,8 +1,8 @@
 """How the accelerations of sixteen rigid machines change with their states.
 
 The body is described by x, y and alpha at S, the centre of the supports' stiffness, where each
-support force depends on one of them alone. With e_i, n_i of `models.vibrator.equations.rigid` about S, a change
-of the state changes the accelerations by
+support force depends on one of them alone. With e_i, n_i of `models.vibrator.equations.rigid` about
+S, a change of the state changes the accelerations by
 
     da = B dF,    dpsi_1'' = dq_1 - r_1 e_1 . da,    dpsi_2'' = dq_2 + r_2 e_2 . da,
 
