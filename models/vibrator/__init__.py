@@ -12,6 +12,7 @@ Reading order; each part imports only those above it:
     exact         one propagator: any machine, one at a time
     lanes         the other: sixteen rigid machines at a time
     start         from standstill to the steady state
+    run_down      from synchronous running to rest
     service       years of service: time to disphasing
     batch         from rows of a study to outputs
     trajectory    one labelled run
@@ -54,7 +55,10 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
-    dimensions={"instant": ("s", "time since the motors were switched on")},
+    dimensions={
+        "instant": ("s", "time since the motors were switched on"),
+        "run_down_phase": ("rad", "phase of vibrator 1 at which the motors are switched off"),
+    },
     cheap={"theory_disphasing_angle": _theory_batch},
     random=True,
     random_unless={"spring_life": math.inf},

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from models.vibrator.lanes.machines import follows
 from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.run_down import run_downs
 from models.vibrator.service.life import lives
 from models.vibrator.start import exact, fast
 from models.vibrator.start.regimes import Outcome, wrapped
@@ -71,6 +72,8 @@ def batch(
         angle, speed_1, speed_2 = np.moveaxis(outcome.on_the_way, 2, 0)
         outputs["run_up_angle"] = wrapped(angle)
         outputs["run_up_speed_1"], outputs["run_up_speed_2"] = speed_1, speed_2
+    if settings.run_down_phases:
+        outputs |= run_downs(p, *seen[:2], outcome.speed, quick, settings)
     return outputs, status
 
 

@@ -214,6 +214,19 @@ class Settings:
         float,
         Setting("times to disphasing beyond it are censored", "s", bounds=(1.0, 1e12)),
     ] = 3.15576e9
+    run_down_phases: Annotated[
+        tuple[float, ...],
+        Setting(
+            "phases of vibrator 1, from the working axis, at which synchronous motors are switched"
+            " off; the run-down is then reported",
+            "rad",
+            bounds=(0.0, 2 * pi),
+            optional=True,
+        ),
+    ] = ()
+    run_down: Annotated[
+        float, Setting("longest run-down simulated", "s", bounds=(1.0, 36000.0))
+    ] = 1000.0
     body_points: Annotated[
         tuple[tuple[float, float], ...],
         Setting(
@@ -230,11 +243,14 @@ class Settings:
             raise ValueError("instants must be a list of increasing numbers")
         if instants and instants[-1] > self.run_up:
             raise ValueError("instants must not lie beyond the run_up")
+        phases = self.run_down_phases
+        if any(b <= a for a, b in zip(phases, phases[1:], strict=False)):
+            raise ValueError("run_down_phases must be a list of increasing numbers")
 
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
     """Return the coordinates of the outputs' dimensions."""
-    return {"instant": settings.instants}
+    return {"instant": settings.instants, "run_down_phase": settings.run_down_phases}
 
 
 OUTPUTS: Mapping[str, Output] = {
@@ -279,6 +295,20 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "regime": Output(
         "1", "type of steady state reached from the start", "category", categories=REGIMES
+    ),
+    "run_down_excursion": Output(
+        "m",
+        "largest displacement of C after the motors are switched off at the phase",
+        dims=("run_down_phase",),
+        may_be_undefined=True,
+    ),
+    "run_down_time": Output(
+        "s",
+        "time until both vibrators turn slower than 0.05 of their synchronous speed",
+        "lifetime",
+        ("run_down_phase",),
+        may_be_undefined=True,
+        success="the machine has run down",
     ),
     "time_to_disphasing": Output(
         "s",
