@@ -180,9 +180,9 @@ def test_chance_decides_only_where_springs_can_break():
     few, more = (compute(aged, seeds)["time_to_disphasing"] for seeds in ((1, 2), (3, 4)))
     np.testing.assert_array_equal(few, more)
     brittle = aged._replace(spring_life=3e7)
-    one, other = compute(brittle, (1, 2))["time_to_disphasing"]
-    assert one != other
-    np.testing.assert_array_equal(compute(brittle, (2, 1))["time_to_disphasing"], [other, one])
+    first, other = compute(brittle, (1, 2))["time_to_disphasing"]
+    assert first != other
+    np.testing.assert_array_equal(compute(brittle, (2, 1))["time_to_disphasing"], [other, first])
 
 
 def test_a_machine_with_feed_and_on_mounts_ages_too():
