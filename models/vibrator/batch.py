@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.lanes.machines import follows
+from models.vibrator.lanes.machines import follows, is_rigid
 from models.vibrator.parameters import Params, Rows, Settings
 from models.vibrator.run_down import run_downs
 from models.vibrator.service.life import lives
@@ -36,7 +36,8 @@ def batch(
     status : ndarray of int8, shape (n,)
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
-    quick = follows(p, settings) & (settings.propagator == "fast")
+    in_lanes = settings.propagator == "fast"
+    quick, rigid = follows(p, settings) & in_lanes, is_rigid(p, settings) & in_lanes
     outcome, status = (
         Outcome.nothing(len(x), len(settings.instants)),
         np.full(len(x), Status.OK, np.int8),
@@ -61,7 +62,7 @@ def batch(
         "regime": outcome.regime,
     }
     seen = outcome.regime, outcome.disphasing, status == Status.OUT_OF_BUDGET
-    life = lives(p, seed, *seen, quick, settings)
+    life = lives(p, seed, *seen, rigid, settings)
     outputs |= {
         "time_to_disphasing": life.time,
         "time_to_disphasing_censored": life.censored,
@@ -73,7 +74,7 @@ def batch(
         outputs["run_up_angle"] = wrapped(angle)
         outputs["run_up_speed_1"], outputs["run_up_speed_2"] = speed_1, speed_2
     if settings.run_down_phases:
-        outputs |= run_downs(p, *seen[:2], outcome.speed, quick, settings)
+        outputs |= run_downs(p, *seen[:2], outcome.speed, rigid, settings)
     return outputs, status
 
 

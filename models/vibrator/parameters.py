@@ -139,6 +139,9 @@ class Params(NamedTuple):
         "kappa", "1",
         "stiffness and damping of the right support less those of the left, over their sum",
         (-0.95, 0.95), "assumed: equal supports")] = 0.0
+    ramp_time: Annotated[float, Parameter(
+        "t_r", "s", "time in which an inverter raises the synchronous speeds from 0", (0.0, 3600.0),
+        "assumed: switched on directly")] = 0.0
     ageing_time_1: Annotated[float, Parameter(
         "t_1", "s", "time in which the friction of bearing 1 doubles", (1e3, inf),
         NO_AGEING)] = inf

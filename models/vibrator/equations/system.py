@@ -42,6 +42,8 @@ class System(NamedTuple):
         [kg, m s-2, m]
     exact : float
         1 for exact kinematics, 0 for the geometry at alpha = 0.
+    ramp_time, ramp_left : float
+        In which an inverter raises the synchronous speeds; how much of it is left [s].
     """
 
     rigid: Rigid
@@ -65,6 +67,8 @@ class System(NamedTuple):
     feed_gravity: Any
     feed_position: Any
     exact: Any
+    ramp_time: Any
+    ramp_left: Any
 
     def row(self, i: int) -> "System":
         """Return one of n machines, its fields floats."""
@@ -175,6 +179,8 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         feed_gravity=_gravity(p),
         feed_position=p.feed_position,
         exact=np.full_like(p.unbalanced_mass, kinematics == "exact"),
+        ramp_time=p.ramp_time,
+        ramp_left=p.ramp_time,
     )
 
 

@@ -65,8 +65,15 @@ class Machine:
         tolerance: float,
         turns: float = math.inf,
         times: ArrayLike = (),
+        begin: float = math.inf,
     ) -> tuple[Outcome, NDArray[np.float64]]:
-        """Advance `state` in place by a duration or by turns of vibrator 1; return samples, too."""
+        """Advance `state` in place by a duration or by turns of vibrator 1; return samples, too.
+
+        The run begins that long after the motors were switched on; by default after any ramp.
+        """
+        ramp_left = max(self.system.ramp_time - begin, 0.0)
+        if ramp_left != self.system.ramp_left:
+            self.system = self.system._replace(ramp_left=ramp_left)
         times = np.ascontiguousarray(times, float)
         samples = np.full((len(times), len(state)), np.nan)
         ended = propagator.runner(self.system, self.degrees)(

@@ -141,9 +141,7 @@ def test_energy_is_conserved_without_motors_and_losses(kinematics):
     energy, n = lagrange.mechanics(kinematics == "exact").energy, samples.shape[1] // 2
     q, v = np.zeros((2, len(times), 7))
     q[:, :5], v[:, :5] = samples[:, :5], samples[:, n : n + 5]
-    values = [
-        float(energy(lagrange.values(p), 0.0, 0.0, *pair)) for pair in zip(q, v, strict=True)
-    ]
+    values = [float(energy(lagrange.values(p), 0.0, 0.0, *pair)) for pair in zip(q, v, strict=True)]
     assert np.ptp(samples[:, 2]) > 1e-3
     np.testing.assert_allclose(values, values[0], rtol=1e-11)
 
