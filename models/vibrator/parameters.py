@@ -142,6 +142,9 @@ class Params(NamedTuple):
     ramp_time: Annotated[float, Parameter(
         "t_r", "s", "time in which an inverter raises the synchronous speeds from 0", (0.0, 3600.0),
         "assumed: switched on directly")] = 0.0
+    torque_lag: Annotated[float, Parameter(
+        "tau_e", "s", "time constant by which motor torques follow (22)", (0.0, 10.0),
+        "assumed: at once, as in the paper")] = 0.0
     ageing_time_1: Annotated[float, Parameter(
         "t_1", "s", "time in which the friction of bearing 1 doubles", (1e3, inf),
         NO_AGEING)] = inf

@@ -44,6 +44,8 @@ class System(NamedTuple):
         1 for exact kinematics, 0 for the geometry at alpha = 0.
     ramp_time, ramp_left : float
         In which an inverter raises the synchronous speeds; how much of it is left [s].
+    torque_lag : float
+        Time constant of the motor torques [s].
     """
 
     rigid: Rigid
@@ -69,6 +71,7 @@ class System(NamedTuple):
     exact: Any
     ramp_time: Any
     ramp_left: Any
+    torque_lag: Any
 
     def row(self, i: int) -> "System":
         """Return one of n machines, its fields floats."""
@@ -181,6 +184,7 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         exact=np.full_like(p.unbalanced_mass, kinematics == "exact"),
         ramp_time=p.ramp_time,
         ramp_left=p.ramp_time,
+        torque_lag=p.torque_lag,
     )
 
 

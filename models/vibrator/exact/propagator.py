@@ -15,6 +15,7 @@ from models.numerics.dop853 import GUARDED, Outcome, integrator
 from models.numerics.jit import kernel, spliced
 from models.vibrator.equations import general, rigid_motion
 from models.vibrator.equations.system import System
+from models.vibrator.exact import lag
 from models.vibrator.exact.ramp import ramped
 from models.vibrator.parameters import Params
 
@@ -200,12 +201,22 @@ def run_fed_in_ramp(system, state, last_angle, end, absolute, budget, times, sam
 
 def is_extended(system: System) -> bool:
     """Whether a machine needs the equations of `models.vibrator.equations.general`."""
-    return bool(system.exact or system.slides or system.rocks or system.feed_mass)
+    moves = system.exact or system.slides or system.rocks or system.feed_mass
+    return bool(moves or system.torque_lag)
+
+
+def degrees_of(system: System) -> int:
+    """Return the number of degrees of freedom, half the length of a state."""
+    if system.torque_lag:
+        return lag.DEGREES
+    return general.DEGREES if is_extended(system) else rigid_motion.DEGREES
 
 
 def runner(system: System, degrees: int) -> Callable[..., Outcome]:
     """Return the kernel for this many degrees of freedom: `run_rigid` or one with its arguments."""
     in_ramp = system.ramp_left > 0
+    if degrees == lag.DEGREES:
+        return lag.run_lagging
     if degrees == rigid_motion.DEGREES:
         return run_rigid_in_ramp if in_ramp else run_rigid
     if system.feed_mass:
@@ -225,11 +236,14 @@ def start(params: Params, system: System) -> NDArray[np.float64]:
 
     Returns
     -------
-    ndarray, shape (10,) or (16,)
-        Of `models.vibrator.equations.rigid_motion` or of `models.vibrator.equations.general`.
+    ndarray, shape (10,), (16,) or (20,)
+        Of `models.vibrator.equations.rigid_motion`, of `models.vibrator.equations.general`, or of
+        `models.vibrator.exact.lag`.
     """
     row = Params._make(np.array([value]) for value in params)
     (state,) = rigid_motion.initial_state(row)
+    if system.torque_lag:
+        return lag.extend(general.extend(state))
     return general.extend(state) if is_extended(system) else state
 
 
@@ -246,8 +260,8 @@ def propagate(
     Parameters
     ----------
     system : System
-    state : array_like, shape (10,) or (16,)
-        At time 0; the longer one for the extended machine.
+    state : array_like, shape (10,), (16,) or (20,)
+        At time 0; see `start`.
     duration : float
         [s]
     tolerance : float
@@ -285,8 +299,17 @@ def _speed(m: System) -> float:
 
 
 def scales_of(m: System, degrees: int) -> NDArray[np.float64]:
-    """Return the scales of x, y, alpha, psi_1, psi_2, u, chi and height, then of their rates."""
+    """Return the scales of x, y, alpha, psi_1, psi_2, u, chi and height, then of their rates.
+
+    With torques that lag, those of their degrees of freedom, too.
+    """
     shift = (m.rigid.unbalance_1 + m.rigid.unbalance_2) / m.rigid.mass
     turn = shift / math.sqrt(m.rigid.inertia / m.rigid.mass)
-    sizes = np.array([shift, shift, turn, 1.0, 1.0, shift, turn, shift])[:degrees]
-    return np.concatenate([sizes, sizes * _speed(m)])
+    sizes = np.array([shift, shift, turn, 1.0, 1.0, shift, turn, shift, 1.0, 1.0])[:degrees]
+    rates = sizes * _speed(m)
+    if degrees == lag.DEGREES:
+        rates[general.DEGREES :] = (
+            m.rigid.torque_1 / m.rigid.slip_1,
+            m.rigid.torque_2 / m.rigid.slip_2,
+        )
+    return np.concatenate([sizes, rates])

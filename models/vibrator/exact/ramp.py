@@ -65,4 +65,5 @@ def ramped(m, t):
         m.exact,
         m.ramp_time,
         m.ramp_left,
+        m.torque_lag,
     )

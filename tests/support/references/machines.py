@@ -8,7 +8,8 @@ from models.vibrator.parameters import Params
 
 SYMMETRIC = Params(stiffness_x=2.07e6, support_offset=0.0)
 NEUTRAL = (
-    "gravity", "voltage_factor", "support_imbalance", "ramp_time", "ageing_time_1", "ageing_time_2",
+    "gravity", "voltage_factor", "support_imbalance", "ramp_time", "torque_lag",
+    "ageing_time_1", "ageing_time_2",
     "ageing_exponent", "support_hardening", "spring_life", "spring_shape",
 )  # fmt: skip
 UNDAMPED = SYMMETRIC._replace(damping_ratio=0.0, bearing_constant_1=0.0, bearing_constant_2=0.0)
