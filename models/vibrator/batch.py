@@ -44,7 +44,8 @@ def batch(
     )
     _run(fast.outcomes, p, np.flatnonzero(quick), settings, outcome, status)
     # The exact propagator also follows machines too stiff for fixed steps.
-    slow = ~quick | (status == Status.NON_FINITE)
+    stiff = status == Status.NON_FINITE
+    slow, rigid = ~quick | stiff, rigid & ~stiff
     _run(exact.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
     outputs = {
         "disphasing_angle": outcome.disphasing,
