@@ -257,3 +257,25 @@ def test_what_ends_a_life_when_nothing_passes():
     (time, error, cause), exact = follow(lambda t, _: 0.1, end=5e8, cause=SPRING)
     assert (time, error, cause) == (5e8, 0.0, SPRING) and not exact
     assert one_machine.LOOKS == 20
+
+
+@pytest.mark.slow
+def test_more_looks_find_no_earlier_time(monkeypatch):
+    rng = np.random.default_rng(8)
+    n = 300
+    p = Params(
+        unbalance_1=rng.normal(5, 0.025, n),
+        axis_offset=rng.normal(0, 0.0025, n),
+        ageing_time_1=10 ** rng.uniform(7.25, 8.25, n),
+        ageing_time_2=10 ** rng.uniform(7.25, 8.25, n),
+        ageing_exponent=rng.uniform(1, 3, n),
+        support_imbalance=rng.normal(0, 0.02, n),
+        support_hardening=rng.uniform(0, 0.15, n),
+        spring_life=10 ** rng.uniform(7.85, 8.85, n),
+    )
+    few = compute(p, range(n), limited(0.1))
+    monkeypatch.setattr(one_machine, "LOOKS", 160)
+    many = compute(p, range(n), limited(0.1))
+    np.testing.assert_allclose(few["time_to_disphasing"], many["time_to_disphasing"], rtol=2e-6)
+    name = "time_to_disphasing_cause"
+    np.testing.assert_array_equal(few[name], many[name])
