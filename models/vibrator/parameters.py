@@ -315,6 +315,7 @@ OUTPUTS: Mapping[str, Output] = {
         ("run_down_phase",),
         may_be_undefined=True,
         success="the machine has run down",
+        never_known_at_once=False,  # without friction and damping it never comes to rest
     ),
     "time_to_disphasing": Output(
         "s",
