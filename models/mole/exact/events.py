@@ -97,6 +97,12 @@ def _longest(t, y, mode):
 
 
 @kernel
+def _longest_in_soil(t, y, mode):
+    """Return the longest step in which dense output follows soil that relaxes."""
+    return min(_longest(t, y, mode), equations.relaxation_step(y, mode))
+
+
+@kernel
 def _give_way(hold, force):
     """Return the direction in which an interface begins to slip."""
     return 1 if hold.gain * force + hold.offset > 0 else -1
@@ -176,7 +182,8 @@ def _runner(has_soil: bool) -> Callable[..., Any]:
     rates = equations.rates_in_soil if has_soil else equations.rates
     guards, count = (_guards_in_soil, 5) if has_soil else (_guards, 3)
     after = _after_in_soil if has_soil else _after
-    integrate = integrator(rates, guards, count, _LOOKS, _longest)
+    longest = _longest_in_soil if has_soil else _longest
+    integrate = integrator(rates, guards, count, _LOOKS, longest)
 
     @kernel
     def run(

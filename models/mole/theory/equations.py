@@ -187,6 +187,19 @@ def _creep(q, stretch):
 
 
 @kernel
+def relaxation_step(y, mode):
+    """Return the time in which the spring of soil that relaxes does so by a factor of e [s]."""
+    q, stretch = mode.q, 0.0
+    if mode.soil == APART:
+        stretch = y[SOIL_FRONT] - y[SOIL_BASE]
+    elif mode.soil == SLIDING:
+        limit = limit_of_soil(q, y[SOIL_BASE])
+        stretch = limit / q.soil_stiffness - y[SOIL_FRONT] + y[SOIL_BASE]
+    is_relaxing = _creep(q, stretch) != 0
+    return q.soil_damping / q.soil_stiffness if is_relaxing else math.inf
+
+
+@kernel
 def rates_in_soil(t, y, mode, dy):
     """Set dy to the time derivative of the state y, of size 15, of a mole with soil ahead."""
     rates(t, y, mode, dy)
