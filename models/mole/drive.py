@@ -17,19 +17,15 @@ from collections.abc import Callable, Generator
 from functools import partial
 from typing import NamedTuple
 
+from models.numerics.course import NEVER, OPEN, SURE, Course, elapsed, mean_rate
+
 NODES = 10
 """Steps over the last distance, and over the rise of the temperature, at least."""
 
 COPPER = 0.0039  # K-1, of the resistance at 20 degrees Celsius
 
-_CHANGE = 0.3
-_FIRST, _SHORTEST = 0.25, 1 / 16  # steps, of the longest
 _MOST = 400  # responses of a mole
-_SURE = 1.6449  # standard errors: half-width of a 90 % interval
 _WHOLE = 1 - 1e-9  # of a step: the rest is rounding error
-
-PENDING, OPEN, REACHED, NEVER = range(4)
-"""Of a target: not decided yet, never to be decided, or when."""
 
 
 class Rates(NamedTuple):
@@ -61,112 +57,6 @@ class Task(NamedTuple):
     thermal_capacity: float
 
 
-class Course:
-    """Times at which one coordinate reaches its targets.
-
-    Attributes
-    ----------
-    fates : list of int
-        `PENDING`, `OPEN`, `REACHED` or `NEVER`, of each target.
-    times, errors : list of float
-        [s]; where open, the time until which it is not reached.
-    """
-
-    def __init__(self, targets: tuple[float, ...]) -> None:
-        self.targets, self.here = targets, 0.0
-        self.fates = [PENDING] * len(targets)
-        self.times, self.errors = [0.0] * len(targets), [math.nan] * len(targets)
-        self._variance = self._carried = self._truncated = 0.0
-        self._before = 0.0, 0.0, 0.0, 0.0  # length, change of rate, time, its error
-        self._steps = 0
-
-    @property
-    def pending(self) -> list[int]:
-        """Targets not reached yet."""
-        return [i for i, fate in enumerate(self.fates) if fate == PENDING]
-
-    def step(
-        self,
-        end: float,
-        now: float,
-        span: float,
-        rates: tuple[float, float],
-        errors: tuple[float, float],
-        when: Callable[[float], float],
-    ) -> list[int]:
-        """Go on to `end` in a time `span` from `now`; return the targets reached on the way.
-
-        Parameters
-        ----------
-        end, now, span : float
-        rates, errors : tuple of float
-            Rates at the beginning and the end, and their standard errors.
-        when : callable
-            Time from the beginning at which a place is reached.
-        """
-        length, mean = abs(end - self.here), 0.5 * (rates[0] + rates[1])
-        change = rates[1] - rates[0]
-        local = 0.0
-        if length and mean:
-            local = span * abs(change) / (4 * abs(mean))
-            if self._steps:
-                old, old_change, old_span, old_local = self._before
-                defect = abs(change / length - old_change / old) * length * old / (length + old)
-                local = 0.5 * span * defect * length / old / abs(mean)
-                # What follows tells more of the step before: a jump, or no bend at the start.
-                again = 0.5 * old_span * defect * old / length / abs(mean)
-                if self._steps == 1 or again > old_local:
-                    self._truncated += again - old_local
-        reached = []
-        for i in self.pending:
-            if not self.here < self.targets[i] <= end:
-                continue
-            part = when(self.targets[i] - self.here)
-            first, last = self._shares(part, rates, errors)
-            spread = math.sqrt(self._variance + (self._carried + first) ** 2 + last**2)
-            share = part / span if span > 0 else 0.0
-            self.fates[i], self.times[i] = REACHED, now + part
-            self.errors[i] = self._truncated + 2 * share * local + _SURE * spread
-            reached.append(i)
-        first, last = self._shares(span, rates, errors)
-        self._variance += (self._carried + first) ** 2
-        self._carried = last
-        self._truncated += local
-        if length:
-            self._steps += 1
-            self._before = length, change, span, local
-        self.here = end
-        return reached
-
-    @staticmethod
-    def _shares(
-        span: float, rates: tuple[float, float], errors: tuple[float, float]
-    ) -> tuple[float, float]:
-        first, last = (
-            0.5 * span * error / abs(rate) if error and rate else 0.0
-            for rate, error in zip(rates, errors, strict=True)
-        )
-        return first, last
-
-    def stride(self, longest: float, rate: float) -> float:
-        """Return a step over which a rate should change by less than `_CHANGE` of itself."""
-        if not self._steps:
-            return _FIRST * longest
-        length, change = self._before[:2]
-        most = _CHANGE * rate * length / abs(change) if change else longest
-        return min(longest, max(most, _SHORTEST * longest))
-
-    def blur(self, error: float) -> None:
-        """Add an error to the times of the targets to come [s]."""
-        self._truncated += error
-
-    def decide(self, fate: int, time: float) -> None:
-        """Set what is known of all targets that are still pending."""
-        for i in self.pending:
-            self.fates[i] = fate
-            self.times[i] = math.inf if fate == NEVER else time
-
-
 class Drive(NamedTuple):
     """How one mole drove.
 
@@ -184,24 +74,6 @@ class Drive(NamedTuple):
     warmths: list[float]
     speeds: list[float]
     lost: bool
-
-
-def elapsed(way: float, length: float, first: float, last: float) -> float:
-    """Return the time for part of a length over which a positive rate changes linearly.
-
-    It is infinite where the rate falls to zero before.
-    """
-    turn = (last - first) * way / (length * first)
-    if turn <= -1:
-        return math.inf
-    return way / first * (math.log1p(turn) / turn if turn else 1.0)
-
-
-def _mean(first: float, last: float) -> float:
-    """Return the logarithmic mean of two positive rates, else the mean."""
-    if first > 0 and last > 0:
-        return 1 / elapsed(1.0, 1.0, first, last)
-    return 0.5 * (first + last)
 
 
 class _Follower:
@@ -244,7 +116,7 @@ class _Follower:
 
     def refuse(self, stride: float, a: Rates, b: Rates) -> None:
         """Let the mole drive to where its velocity, linear in the place, falls to zero."""
-        if abs(b.speed) < _SURE * b.speed_error:
+        if abs(b.speed) < SURE * b.speed_error:
             self.way.decide(OPEN, self.now)  # whether it is zero is not known
             return
         start = self.way.here
@@ -360,8 +232,8 @@ def drive(task: Task) -> Generator[tuple[float, float], Rates, Drive]:
             way.decide(OPEN, f.now)
             warmth.decide(OPEN, f.now)
             break
-        if way.pending and not here.speed > _SURE * here.speed_error:
-            is_unsure = abs(here.speed) < _SURE * here.speed_error
+        if way.pending and not here.speed > SURE * here.speed_error:
+            is_unsure = abs(here.speed) < SURE * here.speed_error
             way.decide(OPEN if is_unsure else NEVER, f.now)
         moves = bool(way.pending)
         changes = moves and way.here < task.changing
@@ -426,7 +298,7 @@ def drive(task: Task) -> Generator[tuple[float, float], Rates, Drive]:
                 partial(elapsed, length=length, first=ends[0], last=ends[1]),
             )
             if moves and last.speed > 0:
-                f.go(span, way.here + span * _mean(here.speed, last.speed), here, last)
+                f.go(span, way.here + span * mean_rate(here.speed, last.speed), here, last)
         else:
             last = yield place, target
             if math.isnan(last.speed + last.power):

@@ -127,12 +127,12 @@ def happen_in_soil(which, q, lane, m, y, columns):
         y[at.FRONT * LANES + lane] = dent
         if q.soil_damping == 0:
             y[at.FRONT * LANES + lane] = y[at.DENT * LANES + lane] = 0.0
-        _pin(lane, y, columns, q.soil_damping == 0)
+        _pin(lane, y, columns, 1.0, 1.0 if q.soil_damping > 0 else 0.0)
     elif which == YIELD:
         new_soil = SLIDING if soil == ELASTIC else ELASTIC
         if new_soil == SLIDING and q.soil_damping == 0:
             y[at.DENT * LANES + lane] = limit / q.soil_stiffness
-            _pin(lane, y, columns, True)
+            _pin(lane, y, columns, 0.0, 0.0)
     elif which == BAR and bar == 0:
         # The force has just reached its limit: the direction of slip is known.
         new_bar = 1.0 if force + bar_hold_in_soil(q, mole, pushed).offset > 0 else -1.0
@@ -184,12 +184,12 @@ def happen_in_soil(which, q, lane, m, y, columns):
 
 
 @lean
-def _pin(lane, y, columns, is_pinned):
-    """Set what tangents know of the front; if pinned, the dent has no freedom either."""
+def _pin(lane, y, columns, dent, front):
+    """Scale the dent in the tangents, and let the front follow it, or not."""
     for column in range(columns):
         z = (at.PLAIN + at.OF_SOIL + (at.MEASURED + at.OF_SOIL) * column) * LANES + lane
-        y[z + at.DENT_COLUMN * LANES] *= 0.0 if is_pinned else 1.0
-        y[z + at.FRONT_COLUMN * LANES] = y[z + at.DENT_COLUMN * LANES]
+        y[z + at.DENT_COLUMN * LANES] *= dent
+        y[z + at.FRONT_COLUMN * LANES] = front * y[z + at.DENT_COLUMN * LANES]
 
 
 @lean

@@ -6,12 +6,13 @@ from scipy.integrate import solve_ivp
 
 from models.mole import MODEL, exact
 from models.mole.batch import batch
-from models.mole.drive import NEVER, NODES, OPEN, REACHED, Rates, Task, drive, elapsed
+from models.mole.drive import NODES, Rates, Task, drive
 from models.mole.lanes.rows import CURRENT, SQUARED
 from models.mole.parameters import Params, Settings
 from models.mole.response.machines import Machines
 from models.mole.theory import equations
 from models.mole.theory.system import mole
+from models.numerics.course import NEVER, OPEN, REACHED
 from uq.contract import Status
 from uq.sampling.named_values import read_settings
 
@@ -169,14 +170,6 @@ def test_a_coil_may_cool_down_again():
     np.testing.assert_allclose(done.temperature.times[0], expected, rtol=0.02)
     assert done.temperature.fates[1] == NEVER  # it falls to 20 K in the end
     np.testing.assert_allclose(done.warmths[1], 20.0)
-
-
-def test_elapsed_is_the_integral_of_the_slowness():
-    places = np.linspace(0, 3, 20_001)
-    for first, last in (0.5, 0.1), (0.2, 0.2), (0.2, 0.2 * (1 + 1e-12)), (0.1, 2.0):
-        slowness = 1 / (first + (last - first) * places / 3)
-        expected = np.trapezoid(slowness, places)
-        np.testing.assert_allclose(elapsed(3.0, 3.0, first, last), expected, rtol=1e-6)
 
 
 # The real mole.

@@ -133,15 +133,17 @@ def follow(p, end, times, longest=5e-4):
             jump = p.supply_voltage * math.sin(m.omega * t + p.supply_phase)
             y[P] += -jump if switched % 2 else jump
             switched += 1
+        until = min(end, switched * half)
         done = solve_ivp(
             m.rates,
-            (t, min(end, switched * half)),
+            (t, until),
             y,
             "DOP853",
             events=events,
             args=(mode, switched % 2),
             rtol=1e-12,
             atol=1e-13,
+            first_step=min(1e-6, until - t),  # a slip that has just begun must not seem to end
             max_step=longest,
             dense_output=True,
         )
