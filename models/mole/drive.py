@@ -15,9 +15,10 @@ zero, the mole is refused, and never arrives. Beyond the last distance friction 
 import math
 from collections.abc import Callable, Generator
 from functools import partial
+from operator import itemgetter
 from typing import NamedTuple
 
-from models.numerics.course import NEVER, OPEN, SURE, Course, elapsed, mean_rate
+from models.numerics.course import NEVER, OPEN, REACHED, SURE, Course, elapsed, mean_rate
 
 NODES = 10
 """Steps over the last distance, and over the rise of the temperature, at least."""
@@ -65,6 +66,8 @@ class Drive(NamedTuple):
     distance, temperature : Course
     warmths, speeds : list of float
         Temperature rise [K] and velocity [m s-1] where each temperature is reached, or in the end.
+    warmth_errors, speed_errors : list of float
+        By the mean rates, in the sense of 90 % intervals, and by what is linear between them.
     lost : bool
         Whether a response on the way could not be computed.
     """
@@ -73,6 +76,8 @@ class Drive(NamedTuple):
     temperature: Course
     warmths: list[float]
     speeds: list[float]
+    warmth_errors: list[float]
+    speed_errors: list[float]
     lost: bool
 
 
@@ -84,6 +89,8 @@ class _Follower:
         self.way, self.warmth = Course(task.distances), Course(task.temperatures)
         self.warmths = [math.nan] * len(task.temperatures)
         self.speeds = self.warmths.copy()
+        self.nodes: list[tuple[float, Rates]] = []  # temperatures, and rates there
+        self.settled = 0.0, 0.0  # errors of temperature and velocity in the end
 
     def heating(self, rates: Rates, theta: float) -> float:
         """Return dtheta/dt [K s-1]."""
@@ -95,12 +102,65 @@ class _Follower:
     ) -> None:
         """Let the coil warm."""
         begin = self.warmth.here
+        self.note(begin, a)
+        self.note(end, b)
         ends = self.heating(a, begin), self.heating(b, end)
         errors = tuple(r.power_error / self.task.thermal_capacity for r in (a, b))
         for i in self.warmth.step(end, self.now, span, ends, (errors[0], errors[1]), when):
             share = (self.task.temperatures[i] - begin) / (end - begin)
             self.warmths[i] = self.task.temperatures[i]
             self.speeds[i] = a.speed + share * (b.speed - a.speed)
+
+    def note(self, theta: float, rates: Rates) -> None:
+        """Keep rates at a temperature, unless they are the last ones kept."""
+        if not self.nodes or self.nodes[-1][0] != theta:
+            self.nodes.append((theta, rates))
+
+    def bent(self, theta: float) -> tuple[float, float]:
+        """Return the errors of velocity and power linear between nodes, at a temperature.
+
+        They follow from the largest second divided difference beside it; without any, they are a
+        quarter of the change.
+        """
+        places = [place for place, _ in self.nodes]
+        last = len(places) - 2
+        here = next((i for i in range(last + 1) if places[i] <= theta <= places[i + 1]), last)
+        if here < 0:
+            return 0.0, 0.0
+        left, right = places[here], places[here + 1]
+        room = max((theta - left) * (right - theta), 0.0)
+        errors = []
+        for field in (0, 2):
+            values = [rates[field] for _, rates in self.nodes]
+            slopes = [
+                (values[i + 1] - values[i]) / (places[i + 1] - places[i]) for i in range(last + 1)
+            ]
+            bends = [
+                abs((slopes[i + 1] - slopes[i]) / (places[i + 2] - places[i]))
+                for i in (here - 1, here)
+                if 0 <= i < last and places[i + 2] != places[i]
+            ]
+            flat = abs(slopes[here] / (right - left))  # of a quarter of the change in the middle
+            errors.append(room * max(bends, default=flat))
+        return errors[0], errors[1]
+
+    def errors(self) -> tuple[list[float], list[float]]:
+        """Return the errors of the temperatures, and of the velocities there."""
+        warmths, speeds = [], []
+        for theta, fate in zip(self.warmths, self.warmth.fates, strict=True):
+            if fate != REACHED:
+                is_settled = fate == NEVER
+                warmths.append(self.settled[0] if is_settled else math.nan)
+                speeds.append(self.settled[1] if is_settled else math.nan)
+                continue
+            below = max((n for n in self.nodes if n[0] <= theta), key=itemgetter(0))
+            above = min((n for n in self.nodes if n[0] >= theta), key=itemgetter(0))
+            length = above[0] - below[0]
+            share = (theta - below[0]) / length if length else 0.0
+            spread = math.hypot((1 - share) * below[1].speed_error, share * above[1].speed_error)
+            warmths.append(0.0)
+            speeds.append(self.bent(theta)[0] + SURE * spread)
+        return warmths, speeds
 
     def go(self, span: float, end: float, a: Rates, b: Rates) -> None:
         """Let the mole drive, its velocity linear in the place."""
@@ -132,6 +192,7 @@ class _Follower:
     def settle(self, rates: Rates) -> None:
         """Let the mole drive on at constant rates, with a coil that warms no more."""
         self.warmth.decide(NEVER, self.now)
+        self.settled = 0.0, SURE * rates.speed_error
         if self.way.pending:
             self._drive_on(rates, rates, lambda time: rates.speed * time)
 
@@ -165,6 +226,14 @@ class _Follower:
             self.warm(when(reach - theta), reach, a, settled, when)
         self.warmth.decide(NEVER, self.now)
         self.warmth.here = theta + rise
+        self.note(theta, a)
+        self.note(end, b)
+        slower, weaker = self.bent(theta + rise)
+        turn = abs(first - last) / abs(end - theta) if end != theta else 0.0  # [s-1]
+        unsure = (weaker + SURE * settled.power_error) / self.task.thermal_capacity
+        off = unsure / turn if turn else 0.0
+        slope = abs((b.speed - a.speed) / (end - theta)) if end != theta else 0.0
+        self.settled = off, slower + SURE * settled.speed_error + slope * off
         if self.way.pending:
             self._drive_on(a, settled, place)
         return settled
@@ -312,4 +381,5 @@ def drive(task: Task) -> Generator[tuple[float, float], Rates, Drive]:
         if warmth.fates[i] == NEVER:
             f.warmths[i], f.speeds[i] = warmth.here, here.speed
     is_lost = math.isnan(here.speed + here.power) or asked > _MOST
-    return Drive(way, warmth, f.warmths, f.speeds, is_lost)
+    warmth_errors, speed_errors = f.errors()
+    return Drive(way, warmth, f.warmths, f.speeds, warmth_errors, speed_errors, is_lost)

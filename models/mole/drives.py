@@ -89,6 +89,10 @@ def drives(
         speeds = [way.speeds if way else none for way in ways]
         outputs["warm_temperature"] = np.array(warmths, float)
         outputs["warm_progression_rate"] = np.array(speeds, float)
+        warmths = [way.warmth_errors if way else none for way in ways]
+        speeds = [way.speed_errors if way else none for way in ways]
+        outputs["warm_temperature_error"] = np.array(warmths, float)
+        outputs["warm_progression_rate_error"] = np.array(speeds, float)
     return outputs, np.array([way is not None and way.lost for way in ways], bool)
 
 

@@ -244,9 +244,21 @@ OUTPUTS: Mapping[str, Output] = {
         dims=("temperature",),
         may_be_undefined=True,
     ),
+    "warm_temperature_error": Output(
+        "K",
+        "numerical error of the warm temperature; 0 where the temperature is reached",
+        dims=("temperature",),
+        may_be_undefined=True,
+    ),
     "warm_progression_rate": Output(
         "m s-1",
         "mean velocity of the mole with the coil at the warm temperature",
+        dims=("temperature",),
+        may_be_undefined=True,
+    ),
+    "warm_progression_rate_error": Output(
+        "m s-1",
+        "numerical error of the mean velocity when warm, by the means and the steps",
         dims=("temperature",),
         may_be_undefined=True,
     ),
