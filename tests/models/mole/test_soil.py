@@ -5,13 +5,15 @@ import pytest
 import slider
 
 from models.mole import exact, lanes
+from models.mole.batch import batch
 from models.mole.lanes.rows import CONTACTS, DENT, FRONT, IMPACT, PROGRESS, SOIL_MODE
 from models.mole.parameters import Params, Settings
 from models.mole.response.machines import Machines
 from models.mole.response.settled import respond
 from models.mole.theory import equations
-from models.mole.theory.soil import APART
+from models.mole.theory.soil import APART, ELASTIC, SLIDING, decide_in_soil
 from models.mole.theory.system import mole
+from uq.contract import Status
 
 SIZES = np.array([1e-2, 1.0, 0.1, 1.0, 80.0, 1e-2, 1e-2, 1e-2])
 STATE = [0, 1, 2, 3, 4, 5, equations.SOIL_FRONT, equations.SOIL_BASE]
@@ -119,3 +121,121 @@ def test_tangents_go_through_events_in_soil_as_neighbouring_motions_do(damping):
     assert abs(flow * scale)[:6, free].max() > 0.01
     settled = respond(some, Settings())
     assert settled.period[0] > 0 and settled.growth[0, 0] < 0
+
+
+def thrust(speed, stiffness, damping=0.0, friction=0.0, limit=30.0):
+    """Return how far the base is driven, and the state, of a mole and its bar thrown as one."""
+    p = Params(
+        bar_friction=9.0,
+        supply_voltage=2.7,
+        spring_rest=-0.022,
+        mole_friction=friction,
+        soil_limit=limit,
+        soil_stiffness=stiffness,
+        soil_damping=damping,
+    )
+    q = mole(p, "physical")
+    y = np.zeros(equations.SIZE_IN_SOIL)
+    y[0], y[2] = p.initial_displacement, speed
+    soil = SLIDING if damping * speed >= limit else ELASTIC
+    state = exact.State(0.0, y, False, 0, 1, 0, soil)
+    end = exact.propagate(q, state, 0.3, 1e-12).state
+    return end.y[equations.SOIL_BASE], 0.5 * (p.bar_mass + p.mole_mass) * speed**2, q, end
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.4])
+def test_in_stiff_soil_a_blow_drives_the_mole_by_its_energy_over_the_forces(friction):
+    base, energy, q, end = thrust(0.3, 1e7, friction=friction)
+    stored = 30.0**2 / (2 * 1e7)
+    forces = 30.0 + q.mole_limit
+    np.testing.assert_allclose(base, (energy - stored) / forces, rtol=1e-4)
+    assert end.y[2] == 0 or friction < 0.4
+
+
+@pytest.mark.parametrize("stiffness", [1e4, 1e5])
+def test_without_friction_a_blow_first_loads_the_soil_then_drives_it(stiffness):
+    """E = F_y^2/(2 k) + F_y db; below the first term there is no advance."""
+    loaded = 30.0**2 / (2 * stiffness)
+    base, energy, _, _ = thrust(0.3, stiffness)
+    np.testing.assert_allclose(base, (energy - loaded) / 30.0, rtol=1e-8)
+    mass = energy / (0.5 * 0.3**2)
+    for share in (0.5, 0.999):
+        base, _, _, end = thrust(np.sqrt(2 * share * loaded / mass), stiffness)
+        assert base == 0
+        np.testing.assert_allclose(end.y[2], -np.sqrt(2 * share * loaded / mass), rtol=1e-6)
+    assert thrust(np.sqrt(2 * 1.001 * loaded / mass), stiffness)[0] > 0
+
+
+@pytest.mark.parametrize("p", drawn(6))
+def test_energy_is_conserved_in_soil(p):
+    q = mole(p, "physical")
+    start = exact.start(p, q)
+    y = exact.propagate(q, start, 0.5, 1e-12).state.y
+
+    def stored(y):
+        dent = y[equations.SOIL_FRONT] - y[equations.SOIL_BASE]
+        return 0.5 * (
+            q.bar_mass * (y[1] + y[2]) ** 2
+            + q.mole_mass * y[2] ** 2
+            + q.spring_stiffness * (y[0] - q.spring_rest) ** 2
+            + q.contact_stiffness * max(y[0] - q.stop_gap, 0.0) ** 2
+            + q.soil_stiffness * dent**2
+        )
+
+    lost = y[equations.FRICTION_LOSS] + y[equations.VISCOUS_LOSS] + y[equations.SOIL_LOSS]
+    balance = y[equations.MAGNETIC_WORK] - lost - stored(y) + stored(start.y)
+    assert abs(balance) < 1e-8 and y[equations.SOIL_LOSS] > 0
+
+
+def test_soil_that_bears_nothing_is_as_no_soil():
+    rows = [Params(control_frequency=7.0, soil_limit=limit) for limit in (0.0, 1e-7)]
+    for p in rows:
+        assert exact.start(p, mole(p, "physical")).y.size == (15 if p.soil_limit else 12)
+    o, status = batch(np.array(rows), np.zeros(2, np.uint64), Settings(tolerance=1e-10))
+    assert np.all(status == Status.OK)
+    np.testing.assert_allclose(o["progression_rate"][1], o["progression_rate"][0], rtol=1e-5)
+    assert o["progression_rate"][0] != o["progression_rate"][1]
+
+
+def test_rows_without_soil_keep_their_bits_beside_rows_with_it():
+    rows = [Params(control_frequency=7.0, soil_limit=limit) for limit in (0.0, 20.0, 0.0)]
+    rows[2] = rows[2]._replace(bar_friction=0.3)
+    seed = np.zeros(3, np.uint64)
+    together, _ = batch(np.array(rows), seed, Settings())
+    for i in range(3):
+        alone, _ = batch(np.array(rows[i : i + 1]), seed[:1], Settings())
+        for name, values in alone.items():
+            np.testing.assert_array_equal(values[0], together[name][i], err_msg=name)
+
+
+def test_soil_that_grows_denser_refuses_the_mole_on_the_way():
+    p = Params(control_frequency=7.0, soil_limit=5.0, soil_limit_gradient=20.0)
+    seed = np.zeros(1, np.uint64)
+    o, _ = batch(np.array([p]), seed, Settings(distance=(1.0, 10.0)))
+    time = o["time_to_distance"][0]
+    assert np.isfinite(time[0]) and time[1] == np.inf
+    _, status, reasons = batch(np.array([p]), seed, Settings(formulation="as-printed"))
+    assert status == [Status.NON_FINITE] and "creates energy" in reasons[0]
+
+
+def test_the_mode_in_soil_is_the_only_one_that_contradicts_nothing():
+    """Every combination of frictions is tried by the reference, which asserts that one fits."""
+    rng = np.random.default_rng(9)
+    seen = set()
+    for p in drawn(20):
+        m, q = slider.Pushing(p), mole(p, "physical")
+        for _ in range(60):
+            y = np.zeros(8)
+            y[0] = rng.uniform(-0.05, 0.01)
+            y[1], y[2] = rng.choice([-0.1, 0.0, 0.1], 2)
+            y[3] = rng.uniform(0, 3)
+            y[5] = y[6] = rng.uniform(0, 2) * p.soil_limit / p.soil_stiffness
+            soil = slider.ELASTIC
+            pushed = m.reaction(y, soil)
+            if pushed < 0:
+                continue
+            fits = m.judged(y, False, soil)
+            got = decide_in_soil(q, y[1], y[2], m.force(y[:6], False), pushed)
+            assert got == (fits.bar, fits.mole)
+            seen.add((y[1] == 0, y[2] == 0, *got))
+    assert len(seen) >= 20
