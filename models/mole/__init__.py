@@ -56,6 +56,8 @@ MODEL = Model(
     references=(
         "J.-H. Ho, V.-D. Nguyen, K.-C. Woo, Nonlinear dynamics of a new electro-vibro-impact "
         "system, Nonlinear Dyn. 63 (2011) 35-49",
+        "E. Pavlovskaia, M. Wiercigroch, C. Grebogi, Modeling of an impact system with a drift, "
+        "Phys. Rev. E 64 (2001) 056224 (the soil ahead of the mole)",
     ),
     headline=("progression_rate", "impact_work_rate"),
     row_name=("mole", "moles"),

@@ -166,7 +166,7 @@ def test_without_friction_a_blow_first_loads_the_soil_then_drives_it(stiffness):
     assert thrust(np.sqrt(2 * 1.001 * loaded / mass), stiffness)[0] > 0
 
 
-@pytest.mark.parametrize("p", drawn(6))
+@pytest.mark.parametrize("p", list(drawn(6)))
 def test_energy_is_conserved_in_soil(p):
     q = mole(p, "physical")
     start = exact.start(p, q)
