@@ -49,6 +49,8 @@ class Task(NamedTuple):
         Distance over which the ground changes [m]; 0 if it does not.
     thermal_resistance, thermal_capacity : float
         R_th [K W-1], C_th [J K-1].
+    blow : float
+        Time from blow to blow [s]: where the mole is within it is not known.
     """
 
     distances: tuple[float, ...]
@@ -56,6 +58,7 @@ class Task(NamedTuple):
     changing: float
     thermal_resistance: float
     thermal_capacity: float
+    blow: float = 0.0
 
 
 class Drive(NamedTuple):
@@ -165,6 +168,9 @@ class _Follower:
     def go(self, span: float, end: float, a: Rates, b: Rates) -> None:
         """Let the mole drive, its velocity linear in the place."""
         length = end - self.way.here
+        if self.task.changing > 0:
+            # The ground changes by half an advance while the mole is driven by a whole one.
+            self.way.blur(0.5 * self.task.blow * abs(math.log(b.speed / a.speed)))
         self.way.step(
             end,
             self.now,

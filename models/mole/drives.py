@@ -64,6 +64,7 @@ def drives(
             changing if changes[i] else 0.0,
             float(p.coil_thermal_resistance[i]),
             float(p.coil_thermal_capacity[i]),
+            1 / float(p.control_frequency[i]),
         )
         going[i] = drive(task)
         wanted[i] = next(going[i])

@@ -146,9 +146,10 @@ def thrust(speed, stiffness, damping=0.0, friction=0.0, limit=30.0):
 @pytest.mark.parametrize("friction", [0.1, 0.4])
 def test_in_stiff_soil_a_blow_drives_the_mole_by_its_energy_over_the_forces(friction):
     base, energy, q, end = thrust(0.3, 1e7, friction=friction)
-    stored = 30.0**2 / (2 * 1e7)
     forces = 30.0 + q.mole_limit
-    np.testing.assert_allclose(base, (energy - stored) / forces, rtol=1e-4)
+    np.testing.assert_allclose(base, energy / forces, rtol=2e-3)
+    loading = 30.0**2 / (2 * 1e7) + q.mole_limit * 30.0 / 1e7
+    np.testing.assert_allclose(base, (energy - loading) / forces, rtol=1e-6)
     assert end.y[2] == 0 or friction < 0.4
 
 
@@ -184,7 +185,7 @@ def test_energy_is_conserved_in_soil(p):
 
     lost = y[equations.FRICTION_LOSS] + y[equations.VISCOUS_LOSS] + y[equations.SOIL_LOSS]
     balance = y[equations.MAGNETIC_WORK] - lost - stored(y) + stored(start.y)
-    assert abs(balance) < 1e-8 and y[equations.SOIL_LOSS] > 0
+    assert abs(balance) < 1e-8 and y[equations.SOIL_LOSS] >= 0
 
 
 def test_soil_that_bears_nothing_is_as_no_soil():
@@ -209,7 +210,7 @@ def test_rows_without_soil_keep_their_bits_beside_rows_with_it():
 
 
 def test_soil_that_grows_denser_refuses_the_mole_on_the_way():
-    p = Params(control_frequency=7.0, soil_limit=5.0, soil_limit_gradient=20.0)
+    p = Params(control_frequency=7.0, soil_limit=5.0, soil_limit_gradient=60.0)
     seed = np.zeros(1, np.uint64)
     o, _ = batch(np.array([p]), seed, Settings(distance=(1.0, 10.0)))
     time = o["time_to_distance"][0]
