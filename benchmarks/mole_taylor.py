@@ -9,6 +9,7 @@ import numpy as np
 
 from benchmarks import mole_modes as modes
 from models.mole.lanes.modes import mole_of
+from models.mole.theory.system import Mole
 
 
 class Taylor:
@@ -19,7 +20,7 @@ class Taylor:
         c = [hy.par[i] for i in range(modes.CONSTANTS)]
         added = c[modes.BAR_COIL] * hy.exp(0.5 * c[modes.SLOPE] * (y[modes.U] * y[modes.U]))
         rates, guards = modes.motion.py_func(y, c, added)
-        self.table, self.mode = np.empty((batch, 20)), np.empty((modes.MODE, batch))
+        self.table, self.mode = np.empty((batch, len(Mole._fields))), np.empty((modes.MODE, batch))
         self.integrator = hy.taylor_adaptive_batch(
             list(zip(y, rates, strict=True)),
             np.zeros((modes.STATE, batch)),

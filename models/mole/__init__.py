@@ -41,7 +41,7 @@ def _simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
 MODEL = Model(
     name="mole",
     title="electro-vibro-impact ground mole that creeps forward against dry friction",
-    version="7",
+    version="8",
     parameters=Params,
     settings=Settings,
     outputs=OUTPUTS,
@@ -56,6 +56,8 @@ MODEL = Model(
     references=(
         "J.-H. Ho, V.-D. Nguyen, K.-C. Woo, Nonlinear dynamics of a new electro-vibro-impact "
         "system, Nonlinear Dyn. 63 (2011) 35-49",
+        "E. Pavlovskaia, M. Wiercigroch, C. Grebogi, Modeling of an impact system with a drift, "
+        "Phys. Rev. E 64 (2001) 056224 (the soil ahead of the mole)",
     ),
     headline=("progression_rate", "impact_work_rate"),
     row_name=("mole", "moles"),

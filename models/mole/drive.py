@@ -15,21 +15,18 @@ zero, the mole is refused, and never arrives. Beyond the last distance friction 
 import math
 from collections.abc import Callable, Generator
 from functools import partial
+from operator import itemgetter
 from typing import NamedTuple
+
+from models.numerics.course import NEVER, OPEN, REACHED, SURE, Course, elapsed, mean_rate
 
 NODES = 10
 """Steps over the last distance, and over the rise of the temperature, at least."""
 
 COPPER = 0.0039  # K-1, of the resistance at 20 degrees Celsius
 
-_CHANGE = 0.3
-_FIRST, _SHORTEST = 0.25, 1 / 16  # steps, of the longest
 _MOST = 400  # responses of a mole
-_SURE = 1.6449  # standard errors: half-width of a 90 % interval
 _WHOLE = 1 - 1e-9  # of a step: the rest is rounding error
-
-PENDING, OPEN, REACHED, NEVER = range(4)
-"""Of a target: not decided yet, never to be decided, or when."""
 
 
 class Rates(NamedTuple):
@@ -52,6 +49,8 @@ class Task(NamedTuple):
         Distance over which the ground changes [m]; 0 if it does not.
     thermal_resistance, thermal_capacity : float
         R_th [K W-1], C_th [J K-1].
+    blow : float
+        Time from blow to blow [s]: where the mole is within it is not known.
     """
 
     distances: tuple[float, ...]
@@ -59,112 +58,7 @@ class Task(NamedTuple):
     changing: float
     thermal_resistance: float
     thermal_capacity: float
-
-
-class Course:
-    """Times at which one coordinate reaches its targets.
-
-    Attributes
-    ----------
-    fates : list of int
-        `PENDING`, `OPEN`, `REACHED` or `NEVER`, of each target.
-    times, errors : list of float
-        [s]; where open, the time until which it is not reached.
-    """
-
-    def __init__(self, targets: tuple[float, ...]) -> None:
-        self.targets, self.here = targets, 0.0
-        self.fates = [PENDING] * len(targets)
-        self.times, self.errors = [0.0] * len(targets), [math.nan] * len(targets)
-        self._variance = self._carried = self._truncated = 0.0
-        self._before = 0.0, 0.0, 0.0, 0.0  # length, change of rate, time, its error
-        self._steps = 0
-
-    @property
-    def pending(self) -> list[int]:
-        """Targets not reached yet."""
-        return [i for i, fate in enumerate(self.fates) if fate == PENDING]
-
-    def step(
-        self,
-        end: float,
-        now: float,
-        span: float,
-        rates: tuple[float, float],
-        errors: tuple[float, float],
-        when: Callable[[float], float],
-    ) -> list[int]:
-        """Go on to `end` in a time `span` from `now`; return the targets reached on the way.
-
-        Parameters
-        ----------
-        end, now, span : float
-        rates, errors : tuple of float
-            Rates at the beginning and the end, and their standard errors.
-        when : callable
-            Time from the beginning at which a place is reached.
-        """
-        length, mean = abs(end - self.here), 0.5 * (rates[0] + rates[1])
-        change = rates[1] - rates[0]
-        local = 0.0
-        if length and mean:
-            local = span * abs(change) / (4 * abs(mean))
-            if self._steps:
-                old, old_change, old_span, old_local = self._before
-                defect = abs(change / length - old_change / old) * length * old / (length + old)
-                local = 0.5 * span * defect * length / old / abs(mean)
-                # What follows tells more of the step before: a jump, or no bend at the start.
-                again = 0.5 * old_span * defect * old / length / abs(mean)
-                if self._steps == 1 or again > old_local:
-                    self._truncated += again - old_local
-        reached = []
-        for i in self.pending:
-            if not self.here < self.targets[i] <= end:
-                continue
-            part = when(self.targets[i] - self.here)
-            first, last = self._shares(part, rates, errors)
-            spread = math.sqrt(self._variance + (self._carried + first) ** 2 + last**2)
-            share = part / span if span > 0 else 0.0
-            self.fates[i], self.times[i] = REACHED, now + part
-            self.errors[i] = self._truncated + 2 * share * local + _SURE * spread
-            reached.append(i)
-        first, last = self._shares(span, rates, errors)
-        self._variance += (self._carried + first) ** 2
-        self._carried = last
-        self._truncated += local
-        if length:
-            self._steps += 1
-            self._before = length, change, span, local
-        self.here = end
-        return reached
-
-    @staticmethod
-    def _shares(
-        span: float, rates: tuple[float, float], errors: tuple[float, float]
-    ) -> tuple[float, float]:
-        first, last = (
-            0.5 * span * error / abs(rate) if error and rate else 0.0
-            for rate, error in zip(rates, errors, strict=True)
-        )
-        return first, last
-
-    def stride(self, longest: float, rate: float) -> float:
-        """Return a step over which a rate should change by less than `_CHANGE` of itself."""
-        if not self._steps:
-            return _FIRST * longest
-        length, change = self._before[:2]
-        most = _CHANGE * rate * length / abs(change) if change else longest
-        return min(longest, max(most, _SHORTEST * longest))
-
-    def blur(self, error: float) -> None:
-        """Add an error to the times of the targets to come [s]."""
-        self._truncated += error
-
-    def decide(self, fate: int, time: float) -> None:
-        """Set what is known of all targets that are still pending."""
-        for i in self.pending:
-            self.fates[i] = fate
-            self.times[i] = math.inf if fate == NEVER else time
+    blow: float = 0.0
 
 
 class Drive(NamedTuple):
@@ -175,6 +69,8 @@ class Drive(NamedTuple):
     distance, temperature : Course
     warmths, speeds : list of float
         Temperature rise [K] and velocity [m s-1] where each temperature is reached, or in the end.
+    warmth_errors, speed_errors : list of float
+        By the mean rates, in the sense of 90 % intervals, and by what is linear between them.
     lost : bool
         Whether a response on the way could not be computed.
     """
@@ -183,25 +79,9 @@ class Drive(NamedTuple):
     temperature: Course
     warmths: list[float]
     speeds: list[float]
+    warmth_errors: list[float]
+    speed_errors: list[float]
     lost: bool
-
-
-def elapsed(way: float, length: float, first: float, last: float) -> float:
-    """Return the time for part of a length over which a positive rate changes linearly.
-
-    It is infinite where the rate falls to zero before.
-    """
-    turn = (last - first) * way / (length * first)
-    if turn <= -1:
-        return math.inf
-    return way / first * (math.log1p(turn) / turn if turn else 1.0)
-
-
-def _mean(first: float, last: float) -> float:
-    """Return the logarithmic mean of two positive rates, else the mean."""
-    if first > 0 and last > 0:
-        return 1 / elapsed(1.0, 1.0, first, last)
-    return 0.5 * (first + last)
 
 
 class _Follower:
@@ -212,6 +92,8 @@ class _Follower:
         self.way, self.warmth = Course(task.distances), Course(task.temperatures)
         self.warmths = [math.nan] * len(task.temperatures)
         self.speeds = self.warmths.copy()
+        self.nodes: list[tuple[float, Rates]] = []  # temperatures, and rates there
+        self.settled = 0.0, 0.0  # errors of temperature and velocity in the end
 
     def heating(self, rates: Rates, theta: float) -> float:
         """Return dtheta/dt [K s-1]."""
@@ -223,6 +105,8 @@ class _Follower:
     ) -> None:
         """Let the coil warm."""
         begin = self.warmth.here
+        self.note(begin, a)
+        self.note(end, b)
         ends = self.heating(a, begin), self.heating(b, end)
         errors = tuple(r.power_error / self.task.thermal_capacity for r in (a, b))
         for i in self.warmth.step(end, self.now, span, ends, (errors[0], errors[1]), when):
@@ -230,9 +114,63 @@ class _Follower:
             self.warmths[i] = self.task.temperatures[i]
             self.speeds[i] = a.speed + share * (b.speed - a.speed)
 
+    def note(self, theta: float, rates: Rates) -> None:
+        """Keep rates at a temperature, unless they are the last ones kept."""
+        if not self.nodes or self.nodes[-1][0] != theta:
+            self.nodes.append((theta, rates))
+
+    def bent(self, theta: float) -> tuple[float, float]:
+        """Return the errors of velocity and power linear between nodes, at a temperature.
+
+        They follow from the largest second divided difference beside it; without any, they are a
+        quarter of the change.
+        """
+        places = [place for place, _ in self.nodes]
+        last = len(places) - 2
+        here = next((i for i in range(last + 1) if places[i] <= theta <= places[i + 1]), last)
+        if here < 0:
+            return 0.0, 0.0
+        left, right = places[here], places[here + 1]
+        room = max((theta - left) * (right - theta), 0.0)
+        errors = []
+        for field in (0, 2):
+            values = [rates[field] for _, rates in self.nodes]
+            slopes = [
+                (values[i + 1] - values[i]) / (places[i + 1] - places[i]) for i in range(last + 1)
+            ]
+            bends = [
+                abs((slopes[i + 1] - slopes[i]) / (places[i + 2] - places[i]))
+                for i in (here - 1, here)
+                if 0 <= i < last and places[i + 2] != places[i]
+            ]
+            flat = abs(slopes[here] / (right - left))  # of a quarter of the change in the middle
+            errors.append(room * max(bends, default=flat))
+        return errors[0], errors[1]
+
+    def errors(self) -> tuple[list[float], list[float]]:
+        """Return the errors of the temperatures, and of the velocities there."""
+        warmths, speeds = [], []
+        for theta, fate in zip(self.warmths, self.warmth.fates, strict=True):
+            if fate != REACHED:
+                is_settled = fate == NEVER
+                warmths.append(self.settled[0] if is_settled else math.nan)
+                speeds.append(self.settled[1] if is_settled else math.nan)
+                continue
+            below = max((n for n in self.nodes if n[0] <= theta), key=itemgetter(0))
+            above = min((n for n in self.nodes if n[0] >= theta), key=itemgetter(0))
+            length = above[0] - below[0]
+            share = (theta - below[0]) / length if length else 0.0
+            spread = math.hypot((1 - share) * below[1].speed_error, share * above[1].speed_error)
+            warmths.append(0.0)
+            speeds.append(self.bent(theta)[0] + SURE * spread)
+        return warmths, speeds
+
     def go(self, span: float, end: float, a: Rates, b: Rates) -> None:
         """Let the mole drive, its velocity linear in the place."""
         length = end - self.way.here
+        if self.task.changing > 0:
+            # The ground changes by half an advance while the mole is driven by a whole one.
+            self.way.blur(0.5 * self.task.blow * abs(math.log(b.speed / a.speed)))
         self.way.step(
             end,
             self.now,
@@ -244,7 +182,7 @@ class _Follower:
 
     def refuse(self, stride: float, a: Rates, b: Rates) -> None:
         """Let the mole drive to where its velocity, linear in the place, falls to zero."""
-        if abs(b.speed) < _SURE * b.speed_error:
+        if abs(b.speed) < SURE * b.speed_error:
             self.way.decide(OPEN, self.now)  # whether it is zero is not known
             return
         start = self.way.here
@@ -260,6 +198,7 @@ class _Follower:
     def settle(self, rates: Rates) -> None:
         """Let the mole drive on at constant rates, with a coil that warms no more."""
         self.warmth.decide(NEVER, self.now)
+        self.settled = 0.0, SURE * rates.speed_error
         if self.way.pending:
             self._drive_on(rates, rates, lambda time: rates.speed * time)
 
@@ -293,6 +232,14 @@ class _Follower:
             self.warm(when(reach - theta), reach, a, settled, when)
         self.warmth.decide(NEVER, self.now)
         self.warmth.here = theta + rise
+        self.note(theta, a)
+        self.note(end, b)
+        slower, weaker = self.bent(theta + rise)
+        turn = abs(first - last) / abs(end - theta) if end != theta else 0.0  # [s-1]
+        unsure = (weaker + SURE * settled.power_error) / self.task.thermal_capacity
+        off = unsure / turn if turn else 0.0
+        slope = abs((b.speed - a.speed) / (end - theta)) if end != theta else 0.0
+        self.settled = off, slower + SURE * settled.speed_error + slope * off
         if self.way.pending:
             self._drive_on(a, settled, place)
         return settled
@@ -360,8 +307,8 @@ def drive(task: Task) -> Generator[tuple[float, float], Rates, Drive]:
             way.decide(OPEN, f.now)
             warmth.decide(OPEN, f.now)
             break
-        if way.pending and not here.speed > _SURE * here.speed_error:
-            is_unsure = abs(here.speed) < _SURE * here.speed_error
+        if way.pending and not here.speed > SURE * here.speed_error:
+            is_unsure = abs(here.speed) < SURE * here.speed_error
             way.decide(OPEN if is_unsure else NEVER, f.now)
         moves = bool(way.pending)
         changes = moves and way.here < task.changing
@@ -426,7 +373,7 @@ def drive(task: Task) -> Generator[tuple[float, float], Rates, Drive]:
                 partial(elapsed, length=length, first=ends[0], last=ends[1]),
             )
             if moves and last.speed > 0:
-                f.go(span, way.here + span * _mean(here.speed, last.speed), here, last)
+                f.go(span, way.here + span * mean_rate(here.speed, last.speed), here, last)
         else:
             last = yield place, target
             if math.isnan(last.speed + last.power):
@@ -440,4 +387,5 @@ def drive(task: Task) -> Generator[tuple[float, float], Rates, Drive]:
         if warmth.fates[i] == NEVER:
             f.warmths[i], f.speeds[i] = warmth.here, here.speed
     is_lost = math.isnan(here.speed + here.power) or asked > _MOST
-    return Drive(way, warmth, f.warmths, f.speeds, is_lost)
+    warmth_errors, speed_errors = f.errors()
+    return Drive(way, warmth, f.warmths, f.speeds, warmth_errors, speed_errors, is_lost)

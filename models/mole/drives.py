@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.drive import COPPER, REACHED, Course, Drive, Rates, Task, drive
-from models.mole.parameters import Rows, Settings
+from models.mole.drive import COPPER, Drive, Rates, Task, drive
+from models.mole.parameters import AS_PRINTED, FORMULATIONS, Rows, Settings
 from models.mole.response.machines import Machines
 from models.mole.response.measured import Response
 from models.mole.response.settled import mean_rate, respond
+from models.numerics.course import REACHED, Course
 
 _STILL = 1e-7
 """Mean velocity [m s-1] below which motion that repeats is not told from standing still; or the
@@ -20,14 +21,22 @@ _NEGATIVE = (
     "mole_friction + friction_gradient x distance < 0: the friction would be negative at the last"
     " distance"
 )
+_UNBALANCED = (
+    "soil_limit > 0 with formulation 'as-printed', which creates energy: choose 'physical' or"
+    " 'paper'"
+)
 
 
 def refused(p: Rows, settings: Settings) -> dict[int, str]:
     """Return the rows whose ground cannot be, and why."""
-    if not settings.distance:
-        return {}
-    negative = p.mole_friction + p.friction_gradient * settings.distance[-1] < 0
-    return dict.fromkeys(np.flatnonzero(negative).tolist(), _NEGATIVE)
+    reasons: dict[int, str] = {}
+    if settings.formulation == FORMULATIONS[AS_PRINTED]:
+        pushed = (p.soil_limit > 0) | (p.soil_limit_gradient > 0)
+        reasons |= dict.fromkeys(np.flatnonzero(pushed).tolist(), _UNBALANCED)
+    if settings.distance:
+        negative = p.mole_friction + p.friction_gradient * settings.distance[-1] < 0
+        reasons |= dict.fromkeys(np.flatnonzero(negative).tolist(), _NEGATIVE)
+    return reasons
 
 
 def drives(
@@ -42,6 +51,7 @@ def drives(
         Rows of which a later response could not be computed.
     """
     n = len(response.time)
+    changes = (p.friction_gradient != 0) | (p.soil_limit_gradient != 0)
     machines = Machines(machines.system, machines.record.copy())
     changing = settings.distance[-1] if settings.distance else 0.0
     ways: list[Drive | None] = [None] * n
@@ -51,9 +61,10 @@ def drives(
         task = Task(
             settings.distance,
             settings.temperature,
-            changing if p.friction_gradient[i] != 0 else 0.0,
+            changing if changes[i] else 0.0,
             float(p.coil_thermal_resistance[i]),
             float(p.coil_thermal_capacity[i]),
+            1 / float(p.control_frequency[i]),
         )
         going[i] = drive(task)
         wanted[i] = next(going[i])
@@ -79,6 +90,10 @@ def drives(
         speeds = [way.speeds if way else none for way in ways]
         outputs["warm_temperature"] = np.array(warmths, float)
         outputs["warm_progression_rate"] = np.array(speeds, float)
+        warmths = [way.warmth_errors if way else none for way in ways]
+        speeds = [way.speed_errors if way else none for way in ways]
+        outputs["warm_temperature_error"] = np.array(warmths, float)
+        outputs["warm_progression_rate_error"] = np.array(speeds, float)
     return outputs, np.array([way is not None and way.lost for way in ways], bool)
 
 
@@ -93,6 +108,7 @@ def _rates_at(
     q: Rows = type(p)._make(field[rows] for field in p)
     q = q._replace(
         mole_friction=np.maximum(q.mole_friction + q.friction_gradient * places[:, 0], 0.0),
+        soil_limit=q.soil_limit + q.soil_limit_gradient * places[:, 0],
         resistance=q.resistance * (1 + COPPER * places[:, 1]),
     )
     here = machines.with_inputs(rows, q, settings)

@@ -4,6 +4,7 @@ For a phase portrait, plot velocity over displacement of a history. Basins of at
 model or any other, come from ``uq.basins``.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -207,6 +208,94 @@ def bifurcation_diagram(
     ).assign_coords(
         {along: (along, frequencies, {"units": "Hz", "long_name": "control frequency"})}
     )
+
+
+def best_frequency(
+    frequencies: ArrayLike,
+    rates: ArrayLike,
+    probability: float = 0.1,
+    fixed: float = 8.0,
+    confidence: float = 0.95,
+) -> xr.Dataset:
+    """Return a low quantile of progression by control frequency, and what a fixed one loses.
+
+    Parameters
+    ----------
+    frequencies : array_like, shape (n,)
+        Control frequencies of n moles [Hz], several moles at each.
+    rates : array_like, shape (n,)
+        Their ``progression_rate`` [m/s]; NaN of invalid rows.
+    probability : float
+        Of a mole below the quantile.
+    fixed : float
+        The frequency to compare with the best [Hz], one of `frequencies`.
+    confidence : float
+        Of each interval.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``control_frequency``: ``quantile``, its interval ``lower`` and ``upper`` by order
+        statistics, without an assumption about the law (infinite where moles are too few), the
+        number of ``moles``, and whether the frequency ``may_be_best``, its interval reaching that
+        of the best. ``best`` [Hz]; ``loss`` [m/s], by which the quantile at `fixed` is lower than
+        that at the best, with ``loss_lower`` and ``loss_upper``. These are the differences of the
+        ends of both intervals: at least as wide as they need to be.
+
+    Raises
+    ------
+    ValueError
+        If no mole has the frequency `fixed`, or a probability is not between 0 and 1.
+    """
+    for name, value in ("probability", probability), ("confidence", confidence):
+        if not 0 < value < 1:
+            raise ValueError(f"{name} must be between 0 and 1: {value!r}")
+    at, rate = np.asarray(frequencies, float), np.asarray(rates, float)
+    at, rate = at[np.isfinite(rate)], rate[np.isfinite(rate)]
+    places = np.unique(at)
+    if fixed not in places:
+        raise ValueError(f"no mole at {fixed!r} Hz: frequencies are {places.tolist()}")
+    groups = [np.sort(rate[at == place]) for place in places]
+    quantile = np.array([np.quantile(group, probability) for group in groups])
+    lower, upper = np.transpose([_order_interval(g, probability, confidence) for g in groups])
+    best = int(quantile.argmax())
+    here = int(np.searchsorted(places, fixed))
+    loss = quantile[best] - quantile[here]
+    least = lower[best] - upper[here] if here != best else 0.0
+    most = upper[best] - lower[here] if here != best else 0.0
+    unit = {"units": "m s-1"}
+    dim = "control_frequency"
+    return xr.Dataset(
+        {
+            "quantile": (dim, quantile, unit),
+            "lower": (dim, lower, unit),
+            "upper": (dim, upper, unit),
+            "moles": (dim, [len(group) for group in groups]),
+            "may_be_best": (dim, upper >= lower[best]),
+            "best": ((), places[best], {"units": "Hz"}),
+            "loss": ((), loss, unit),
+            "loss_lower": ((), max(least, 0.0), unit),
+            "loss_upper": ((), most, unit),
+        },
+        {dim: (dim, places, {"units": "Hz", "long_name": "control frequency"})},
+        {"model": "mole", "probability": probability, "confidence": confidence, "fixed": fixed},
+    )
+
+
+def _order_interval(values: Array, probability: float, confidence: float) -> tuple[float, float]:
+    """Return the interval of a quantile between two of its ordered values.
+
+    The number of values below the quantile is binomial; each end is missed with at most half of
+    the probability allowed.
+    """
+    n, miss = len(values), 0.5 * (1 - confidence)
+    odds = math.log(probability), math.log1p(-probability)
+    ways = [math.lgamma(n + 1) - math.lgamma(k + 1) - math.lgamma(n - k + 1) for k in range(n + 1)]
+    below = np.cumsum([math.exp(w + k * odds[0] + (n - k) * odds[1]) for k, w in enumerate(ways)])
+    left = int((below <= miss).sum())  # P(fewer than `left` values below) <= miss
+    right = int((below < 1 - miss).sum()) + 1
+    low = float(values[left - 1]) if left > 0 else -math.inf
+    return low, float(values[right - 1]) if right <= n else math.inf
 
 
 def _check_counts(dropped: int = 0, **positive: int) -> None:

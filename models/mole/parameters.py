@@ -82,6 +82,17 @@ class Params(NamedTuple):
     coil_thermal_capacity: Annotated[float, Parameter(
         "C_th", "J K-1", "heat that warms the coil by 1 K", (1.0, 1e6),
         "assumed: about 1 kg of copper")] = 400.0
+    soil_limit: Annotated[float, Parameter(
+        "F_0", "N", "force at which the soil ahead of the mole gives way", (0.0, 1e4),
+        "assumed: an open hole")] = 0.0
+    soil_limit_gradient: Annotated[float, Parameter(
+        "F'", "N m-1", "growth of that force per distance driven", (0.0, 1e4),
+        "assumed: an open hole")] = 0.0
+    soil_stiffness: Annotated[float, Parameter(
+        "k_s", "N m-1", "stiffness of the soil until it gives way", (1e3, 1e7),
+        "assumed: about that of the stop")] = 1e5
+    soil_damping: Annotated[float, Parameter(
+        "c_s", "kg s-1", "damping of the soil", (0.0, 1e4), "assumed: elastic soil")] = 0.0
 # fmt: on
 
 
@@ -233,9 +244,21 @@ OUTPUTS: Mapping[str, Output] = {
         dims=("temperature",),
         may_be_undefined=True,
     ),
+    "warm_temperature_error": Output(
+        "K",
+        "numerical error of the warm temperature; 0 where the temperature is reached",
+        dims=("temperature",),
+        may_be_undefined=True,
+    ),
     "warm_progression_rate": Output(
         "m s-1",
         "mean velocity of the mole with the coil at the warm temperature",
+        dims=("temperature",),
+        may_be_undefined=True,
+    ),
+    "warm_progression_rate_error": Output(
+        "m s-1",
+        "numerical error of the mean velocity when warm, by the means and the steps",
         dims=("temperature",),
         may_be_undefined=True,
     ),

@@ -30,6 +30,7 @@ Reading order; a module imports only those above it:
     scars           volumes of wear scars by their depths, and the inverse
     gap_drift       growth of a gap by itself: creep, relaxation, swelling, a history
     wear_laws       rates of wear by work-rate, time, depth and volume
+    course          when a coordinate reaches places, its rate known at nodes, with errors
     duty            states of operation, mixed or in sequence
     newton          damped Newton's method
     continuation    branches of solutions, through folds

@@ -13,8 +13,8 @@ class State(NamedTuple):
     ----------
     time : float
         Since the relay first closed [s].
-    y : ndarray, shape (12,)
-        See `models.mole.theory.equations`.
+    y : ndarray, shape (12,) or (15,)
+        See `models.mole.theory.equations`; the longer one of a mole with soil ahead.
     contact : bool
         Whether the bar touches the stop.
     bar, mole : int
@@ -22,6 +22,8 @@ class State(NamedTuple):
     switched : int
         How often the relay has switched; it is closed if this is odd. It switches at multiples of
         half the control period, and a state at such an instant is the one before.
+    soil : int
+        Mode of the soil; see `models.mole.theory.soil`.
     """
 
     time: float
@@ -30,6 +32,7 @@ class State(NamedTuple):
     bar: int
     mole: int
     switched: int
+    soil: int = 0
 
 
 class Motion(NamedTuple):
@@ -49,7 +52,7 @@ class Motion(NamedTuple):
         Displacement u [m].
     steps : int
         Steps tried.
-    samples : ndarray, shape (k, 12)
+    samples : ndarray, shape (k, 12) or (k, 15)
         At `times`; NaN after the end of the motion.
     """
 

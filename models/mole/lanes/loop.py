@@ -10,34 +10,43 @@ import math
 from collections.abc import Callable
 
 from models.mole.lanes import block as at
-from models.mole.lanes.block import LANES, MEASURED, Block
-from models.mole.lanes.events import happen, turn_relay
-from models.mole.lanes.expand import expand, expand_tangents
-from models.mole.lanes.locate import find, refine
-from models.mole.lanes.looks import limit_step, look, next_step
+from models.mole.lanes.block import LANES, MEASURED, OF_SOIL, Block
+from models.mole.lanes.events import happen, happen_in_soil, turn_relay
+from models.mole.lanes.expand import expansions
+from models.mole.lanes.locate import locating
+from models.mole.lanes.looks import looks
 from models.mole.lanes.modes import mole_of
-from models.mole.lanes.move import move, move_tangents, warm
-from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, unload
-from models.mole.lanes.strobe import strobe
+from models.mole.lanes.move import moves, warm
+from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, loading
+from models.mole.lanes.strobe import strobing
 from models.numerics.jit import kernel, lean
 
 _DONE = 1 - 1e-12  # of half a control period: the rest is rounding error
 _SHORTEST = 1e-15  # s
 
 
-def propagator(columns: int) -> Callable[..., None]:
+def propagator(columns: int, has_soil: bool) -> Callable[..., None]:
     """Return the kernel that propagates rows.
 
     Parameters
     ----------
     columns : int
         Columns of tangents.
+    has_soil : bool
+        Whether all rows have soil ahead, or none.
 
     Returns
     -------
     kernel
         ``propagate(task, block)``, with a `Task` and a `Block`, returns when every row is done.
     """
+    expand, expand_tangents = expansions(has_soil)
+    limit_step, look, next_step = looks(has_soil)
+    find, refine = locating(has_soil)
+    move, move_tangents = moves(has_soil)
+    load, unload = loading(has_soil)
+    strobe = strobing(has_soil)
+    change = happen_in_soil if has_soil else happen
 
     @lean
     def propagate(task, block):
@@ -54,7 +63,7 @@ def propagator(columns: int) -> Callable[..., None]:
                 idle(lane, m)
         while running > 0:
             for lane in range(LANES):
-                next_step(lane, m, y)
+                next_step(task, lane, m, y)
             expand(m, y, w)
             if columns > 0:
                 expand_tangents(m, y, w, columns)
@@ -77,7 +86,7 @@ def propagator(columns: int) -> Callable[..., None]:
                     continue
                 outcome = GOING
                 if met >= 0:
-                    happen(met, mole_of(table, row), lane, m, y, columns)
+                    change(met, mole_of(table, row), lane, m, y, columns)
                 if ended:
                     turn_relay(mole_of(table, row), lane, m, y)
                     outcome = strobe(lane, task, m, y, ring, columns)
@@ -98,7 +107,10 @@ def propagator(columns: int) -> Callable[..., None]:
     return propagate
 
 
-_plain, _with_one, _with_five = propagator(0), propagator(1), propagator(MEASURED)
+_plain, _with_one, _with_all = (propagator(n, False) for n in (0, 1, MEASURED))
+_soil_plain, _soil_with_one, _soil_with_all = (
+    propagator(n, True) for n in (0, 1, MEASURED + OF_SOIL)
+)
 
 
 @kernel
@@ -112,14 +124,44 @@ def _run_with_one(task, block):
 
 
 @kernel
-def _run_with_five(task, block):
-    _with_five(task, block)
+def _run_with_all(task, block):
+    _with_all(task, block)
 
 
-_RUNS = {0: _run_plain, 1: _run_with_one, MEASURED: _run_with_five}
+@kernel
+def _run_plain_in_soil(task, block):
+    _soil_plain(task, block)
 
 
-def run(task: Task, columns: int) -> None:
-    """Propagate rows with 0, 1 or 5 columns of tangents."""
+@kernel
+def _run_with_one_in_soil(task, block):
+    _soil_with_one(task, block)
+
+
+@kernel
+def _run_with_all_in_soil(task, block):
+    _soil_with_all(task, block)
+
+
+_RUNS = {
+    (0, False): _run_plain,
+    (1, False): _run_with_one,
+    (MEASURED, False): _run_with_all,
+    (0, True): _run_plain_in_soil,
+    (1, True): _run_with_one_in_soil,
+    (MEASURED + OF_SOIL, True): _run_with_all_in_soil,
+}
+
+
+def run(task: Task, columns: int, has_soil: bool) -> None:
+    """Propagate rows, all with soil ahead or all without.
+
+    Parameters
+    ----------
+    task : Task
+    columns : int
+        Of tangents: 0, 1, or as many as there are quantities in a tangent.
+    has_soil : bool
+    """
     if len(task.record):
-        _RUNS[columns](task, Block.made(columns))
+        _RUNS[columns, has_soil](task, Block.made(columns, has_soil))

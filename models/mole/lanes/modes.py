@@ -9,6 +9,7 @@ import math
 from models.mole.lanes import block as at
 from models.mole.lanes.block import LANES
 from models.mole.theory.friction import bar_hold, mole_hold, response
+from models.mole.theory.soil import APART, ELASTIC, RELAXED, SLIDING, push, soil_force
 from models.mole.theory.system import Mole
 from models.numerics.jit import lean
 
@@ -17,7 +18,7 @@ _LONGEST = 1.0  # step times the fastest rate
 
 @lean
 def mole_of(table, row):
-    """Return the mole of one row of a table, shape (n, 20)."""
+    """Return the mole of one row of a table, shape (n, 24)."""
     return Mole(
         table[row, 0],
         table[row, 1],
@@ -39,6 +40,10 @@ def mole_of(table, row):
         table[row, 17],
         table[row, 18],
         table[row, 19],
+        table[row, 20],
+        table[row, 21],
+        table[row, 22],
+        table[row, 23],
     )
 
 
@@ -84,6 +89,61 @@ def enter(q, lane, m, y):
     m[at.MOLE_OFFSET * LANES + lane] = -hold.offset if pulled else 0.0
     limit = 1.0 if bar == 0 else hold.limit
     m[at.MOLE_LIMIT * LANES + lane] = limit if mole == 0 else 0.0
+
+
+@lean
+def enter_soil(q, lane, m, y):
+    """Set what a lane's mode adds if there is soil ahead, after `enter`."""
+    bar, mole = m[at.BAR_MODE * LANES + lane], m[at.MOLE_MODE * LANES + lane]
+    soil = m[at.SOIL_MODE * LANES + lane]
+    k, c, limit = q.soil_stiffness, q.soil_damping, q.soil_limit
+    mode, pushes = response(q, bar, mole), push(q, bar, mole)
+    m[at.D * LANES + lane], m[at.E * LANES + lane] = mode.d, mode.e
+    m[at.ON_BAR * LANES + lane], m[at.ON_MOLE * LANES + lane] = pushes.on_bar, pushes.on_mole
+    m[at.SOIL_1 * LANES + lane] = limit if soil == SLIDING else 0.0
+    m[at.SOIL_DENT * LANES + lane] = k if soil == ELASTIC else 0.0
+    m[at.SOIL_X * LANES + lane] = c if soil == ELASTIC else 0.0
+    creeps = soil == SLIDING and c > 0
+    m[at.DENT_X * LANES + lane] = 0.0 if soil == SLIDING else 1.0
+    m[at.DENT_1 * LANES + lane] = limit / c if creeps else 0.0
+    m[at.DENT_DENT * LANES + lane] = -k / c if creeps else 0.0
+    relaxes = soil == APART and c > 0
+    m[at.RELAX * LANES + lane] = k / c if relaxes else 0.0
+    m[at.HELD_SOIL * LANES + lane] = q.mass / q.mole_mass if bar == 0 and mole != 0 else 0.0
+    # Where the mole sticks, the force of the soil is constant.
+    force = soil_force(q, soil, y[at.DENT * LANES + lane], limit, y[at.X * LANES + lane])
+    pulled = mole == 0 and bar != 0
+    m[at.MOLE_OFFSET * LANES + lane] += force if pulled else 0.0
+    fastest = math.sqrt(k / (q.bar_mass + q.mole_mass)) + c / q.mole_mass
+    m[at.LONGEST * LANES + lane] = min(m[at.LONGEST * LANES + lane], _LONGEST / fastest)
+    for j in range(4):
+        m[(at.SOIL_OF + j) * LANES + lane] = m[(at.YIELD_OF + j) * LANES + lane] = 0.0
+    m[(at.SOIL_OF + 3) * LANES + lane] = m[(at.YIELD_OF + 3) * LANES + lane] = 1.0
+    if soil == APART:
+        m[(at.SOIL_OF + 1) * LANES + lane] = -1.0
+        m[(at.SOIL_OF + 2) * LANES + lane] = 1.0
+        m[(at.SOIL_OF + 3) * LANES + lane] = 0.0
+    elif soil == ELASTIC and mole != 0:
+        m[at.SOIL_OF * LANES + lane], m[(at.SOIL_OF + 1) * LANES + lane] = c, k
+        m[(at.SOIL_OF + 3) * LANES + lane] = 0.0
+        m[at.YIELD_OF * LANES + lane], m[(at.YIELD_OF + 1) * LANES + lane] = -c, -k
+        m[(at.YIELD_OF + 3) * LANES + lane] = limit
+    elif creeps:
+        m[at.YIELD_OF * LANES + lane], m[(at.YIELD_OF + 1) * LANES + lane] = c, k
+        m[(at.YIELD_OF + 3) * LANES + lane] = -limit
+
+
+@lean
+def relax(q, lane, m, y):
+    """Let the soil of a lane rest once its spring has relaxed; return its longest step [s]."""
+    rate = max(m[at.RELAX * LANES + lane], -m[at.DENT_DENT * LANES + lane])
+    if m[at.RELAX * LANES + lane] > 0 and abs(y[at.FRONT * LANES + lane]) < RELAXED:
+        m[at.RELAX * LANES + lane] = y[at.FRONT * LANES + lane] = rate = 0.0
+    settled = q.soil_limit / q.soil_stiffness
+    sliding = m[at.DENT_DENT * LANES + lane] < 0
+    if sliding and abs(y[at.DENT * LANES + lane] - settled) < RELAXED + 4e-16 * settled:
+        m[at.DENT_DENT * LANES + lane] = m[at.DENT_1 * LANES + lane] = rate = 0.0
+    return _LONGEST / rate if rate > 0 else math.inf
 
 
 @lean

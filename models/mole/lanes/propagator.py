@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.lanes.block import MEASURED
+from models.mole.lanes.block import lengths_of
 from models.mole.lanes.loop import run
 from models.mole.lanes.rows import (
     GROWTH,
@@ -21,7 +21,7 @@ from models.mole.lanes.rows import (
 )
 from models.mole.parameters import Rows, Settings
 from models.mole.theory.periods import common_periods
-from models.mole.theory.system import mole
+from models.mole.theory.system import Mole, mole
 from models.numerics import elementary
 
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ class System(NamedTuple):
 
     Attributes
     ----------
-    table : ndarray, shape (n, 20)
+    table : ndarray, shape (n, 24)
         See `models.mole.lanes.rows.table_of`.
     control_frequency : ndarray, shape (n,)
         [Hz]
@@ -52,6 +52,16 @@ class System(NamedTuple):
     common: Counts
     tolerance: float
     budget: int
+
+    @property
+    def soil(self) -> NDArray[np.bool_]:
+        """Moles with soil ahead."""
+        return np.asarray(self.table[:, Mole._fields.index("soil_limit")] > 0)
+
+    @property
+    def measured(self) -> int:
+        """Quantities in a tangent: 5, or 7 if there is soil ahead of all moles."""
+        return lengths_of(bool(self.soil.all())).measured
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return some of the moles."""
@@ -112,7 +122,8 @@ def advance(
     limit : ndarray of int, shape (n,)
         Control periods since the start at which to stop.
     tangents : ndarray, shape (n, 5 columns), optional
-        0, 1 or 5 columns, updated in place; see `models.mole.lanes.rows.Task`.
+        0, 1 or 5 columns, updated in place; see `models.mole.lanes.rows.Task`. Where there is soil
+        ahead, 7 instead of 5; then it must be ahead of all moles.
     repeat : bool
         Whether to stop once the motion repeats.
 
@@ -122,19 +133,40 @@ def advance(
         Moles that reached their limit, or a repetition.
     """
     n = len(record)
+    soil = system.soil
     if tangents is None:
         tangents = np.empty((n, 0))
+    elif soil.any() and not soil.all():
+        raise ValueError("tangents of moles with and without soil ahead differ in length")
     common = system.common if repeat else np.zeros(n, np.int64)
     task = Task(system.table, record, tangents, limit, common, system.tolerance, system.budget)
-    run(task, tangents.shape[1] // MEASURED)
+    columns = tangents.shape[1] // system.measured
+    if soil.any() and not soil.all():
+        for rows in np.flatnonzero(~soil), np.flatnonzero(soil):
+            some = record[rows]
+            part = task._replace(
+                table=task.table[rows],
+                record=some,
+                tangents=tangents[rows],
+                limit=limit[rows],
+                common=common[rows],
+            )
+            run(part, 0, bool(soil[rows[0]]))
+            record[rows] = some
+    else:
+        run(task, columns, bool(soil.any()))
     outcome = record[:, OUTCOME]
     return np.flatnonzero((outcome == REACHED_END) | (outcome == REPEATING))
 
 
 def monodromy(system: System, record: Array, limit: Counts) -> Array:
-    """Return the derivative of (u, v, x, i, p); zero with respect to a sticking velocity."""
+    """Return the derivative of (u, v, x, i, p); zero with respect to a sticking velocity.
+
+    With soil ahead of all moles, of the dent and of the front, too.
+    """
     after = record.copy()
-    tangents = np.tile(np.eye(MEASURED).ravel(), (len(record), 1))
+    size = system.measured
+    tangents = np.tile(np.eye(size).ravel(), (len(record), 1))
     advance(system, after, limit, tangents)
-    columns = tangents.reshape(-1, MEASURED, MEASURED)
+    columns = tangents.reshape(-1, size, size)
     return elementary.exp(after[:, GROWTH])[:, None, None] * columns.transpose(0, 2, 1)

@@ -7,7 +7,7 @@ the means.
 
 import numpy as np
 
-from models.mole.lanes.block import CURRENT, MEASURED, P
+from models.mole.lanes.block import CURRENT, P
 from models.mole.lanes.rows import GROWTH, PERIOD, TOUCHING
 from models.mole.response.machines import APERIODIC, Machines
 from models.mole.response.measured import BATCHES, Array, Counts, Response
@@ -39,6 +39,7 @@ def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Respo
     ndarray of int
         Rows whose motion repeats but is unstable: reached by chance, it is no attractor.
     """
+    size = machines.system.measured
     common, frequency = machines.system.common, machines.system.control_frequency
     half_cycles = machines.system.table[:, Mole._fields.index("supply_speed")] / np.pi
     unstable = [np.empty(0, np.int64)]
@@ -47,7 +48,7 @@ def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Respo
     left = periods * np.maximum(-(-duration // whole), 1)  # common periods
     begun = machines.periods(rows)
     out.touching[rows] = machines.record[rows, TOUCHING] == 1
-    tangents = np.tile(np.eye(MEASURED).ravel(), (len(rows), 1))
+    tangents = np.tile(np.eye(size).ravel(), (len(rows), 1))
     growth, step = np.zeros(len(rows)), 0
     places = np.arange(len(rows))
     while len(places):
@@ -59,7 +60,7 @@ def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Respo
         growth[places] += machines.record[rows[places], GROWTH]
         tangents[places] = flow
         ended = left[places] == step
-        done, flow = places[ended], flow[ended].reshape(-1, MEASURED, MEASURED)
+        done, flow = places[ended], flow[ended].reshape(-1, size, size)
         here = rows[done]
         time = left[done] * common[here] / frequency[here]
         # After an odd number of half mains cycles current and voltage have changed sign.
@@ -90,7 +91,7 @@ def follow_other(machines: Machines, rows: Counts, duration: int, out: Response)
     out : Response
         Updated in place.
     """
-    tangents = np.ones((len(rows), MEASURED))
+    tangents = np.ones((len(rows), machines.system.measured))
     limit = machines.periods(rows) + _WARM_UP
     reached = machines.run(rows, limit, tangents)
     rows, tangents = rows[reached], tangents[reached]

@@ -13,7 +13,24 @@ from models.numerics.batch_means import mean_and_error
 
 
 def respond(machines: Machines, settings: Settings) -> Response:
-    """Return the settled responses of n moles from their present states, which are updated."""
+    """Return the settled responses of n moles from their present states, which are updated.
+
+    Tangents of moles with soil ahead have more components: these moles form a group of their own.
+    """
+    soil = machines.system.soil
+    if soil.all() or not soil.any():
+        return _respond_alike(machines, settings)
+    response = Response.nothing(len(machines.record))
+    for rows in np.flatnonzero(~soil), np.flatnonzero(soil):
+        some = Machines(machines.system.take(rows), machines.record[rows])
+        part = _respond_alike(some, settings)
+        for mine, new in zip(response, part, strict=True):
+            mine[rows] = new
+        machines.record[rows] = some.record
+    return response
+
+
+def _respond_alike(machines: Machines, settings: Settings) -> Response:
     response = Response.nothing(len(machines.record))
     repeating, other = settle(machines, settings.transient)
     unstable = follow_repeating(machines, repeating, settings.duration, response)

@@ -8,7 +8,7 @@ as long as motion is averaged, and the flow has contracted current and voltage.
 
 import numpy as np
 
-from models.mole.lanes.block import CURRENT, MEASURED, TO_REPEAT, P
+from models.mole.lanes.block import CURRENT, TO_REPEAT, P
 from models.mole.lanes.rows import GROWTH, HIGH, LOW, OUTCOME, PROGRESS, REPEATING
 from models.mole.parameters import LONGEST_PERIOD
 from models.mole.response.machines import APERIODIC, Machines
@@ -19,7 +19,6 @@ from models.numerics.batch_means import mean_and_error
 LONGEST = 120.0  # s of transient
 LATEST = 1200.0  # s more if by the tangent flow the motion is still settling
 _FORGOTTEN = np.log(1e-6)
-_ELECTRIC = np.isin(np.arange(MEASURED), (CURRENT, P)).astype(float)  # a tangent
 _LOOK = 1.0  # s between two checks of the tangent flow
 
 
@@ -60,7 +59,9 @@ def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
     """Run moles until their start is forgotten; return those that completed the run."""
     done = [np.empty(0, np.int64)]
     look = np.maximum(np.round(_LOOK * machines.system.control_frequency[rows]), 1).astype(np.int64)
-    tangents, growth = np.ones((len(rows), MEASURED)), np.zeros(len(rows))
+    size = machines.system.measured
+    electric = np.isin(np.arange(size), (CURRENT, P)).astype(float)  # a tangent
+    tangents, growth = np.ones((len(rows), size)), np.zeros(len(rows))
     begun, rested = machines.periods(rows), np.zeros(len(rows), np.int64)
     limit, longest = begun + look, begun + longest
     while len(rows):
@@ -71,7 +72,7 @@ def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
         long_enough = (rested == 0) | (rests & (rested + look >= APERIODIC))
         settled = (growth < _FORGOTTEN) & long_enough | (limit >= longest)
         new = rests != (rested > 0)
-        tangents[new], growth[new] = np.where(rests[new, None], _ELECTRIC, 1.0), 0.0
+        tangents[new], growth[new] = np.where(rests[new, None], electric, 1.0), 0.0
         rested = np.where(rests, rested + look, 0)
         done.append(rows[reached[settled[reached]]])
         keep = reached[~settled[reached]]

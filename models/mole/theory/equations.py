@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 from models.mole.theory.friction import Hold, Response, bar_hold, mole_hold, response
+from models.mole.theory.soil import APART, RELAXED, SLIDING, Push, push, soil_force
 from models.mole.theory.system import Mole
 from models.numerics.jit import inlined, kernel
 
@@ -25,6 +26,9 @@ capacitor, and of the magnetic force on the bar; heat from dry friction and from
 IMPULSE = 11
 """Impulse of the contact force since the start [N s]."""
 SIZE = 12
+SOIL_FRONT, SOIL_BASE, SOIL_LOSS = range(12, 15)
+"""z, b [m], and heat in the soil [J]: the third part, only of a mole with soil ahead."""
+SIZE_IN_SOIL = 15
 
 _FAR = 8.0  # widths of the coil, beyond which the bar adds less than 1e-14 of its inductance
 
@@ -58,7 +62,11 @@ class Mode(NamedTuple):
         Direction of slip: 1, -1, or 0 if they stick.
     response : Response
     bar_hold, mole_hold : Hold
-        The latter is meaningless while the bar sticks: then no force makes the mole slip.
+        The latter is meaningless while the bar sticks: then no force makes the mole slip. Both are
+        without the force of the soil.
+    soil : int
+        `APART`, `ELASTIC` or `SLIDING`, of `models.mole.theory.soil`.
+    push : Push
     """
 
     q: Mole
@@ -69,10 +77,12 @@ class Mode(NamedTuple):
     response: Response
     bar_hold: Hold
     mole_hold: Hold
+    soil: int
+    push: Push
 
 
 @kernel
-def mode(q, contact, relay, bar, mole):
+def mode(q, contact, relay, bar, mole, soil):
     """Return the `Mode` of a mole q."""
     return Mode(
         q,
@@ -83,6 +93,8 @@ def mode(q, contact, relay, bar, mole):
         response(q, bar, mole),
         bar_hold(q, mole),
         mole_hold(q, bar),
+        soil,
+        push(q, bar, mole),
     )
 
 
@@ -148,3 +160,60 @@ def rates(t, y, mode, dy):
     dy[FRICTION_LOSS] = q.bar_limit * mode.bar * v + q.mole_limit * mode.mole * x
     dy[VISCOUS_LOSS] = q.damping * v * v
     dy[IMPULSE] = contact
+
+
+@kernel
+def limit_of_soil(q, base):
+    """Return the force F_y at which the soil gives way with its base at b [N]."""
+    return q.soil_limit + q.soil_limit_gradient * base
+
+
+@kernel
+def pushed(y, mode):
+    """Return the force F_s of the soil on the mole [N]."""
+    base = y[SOIL_BASE]
+    limit = limit_of_soil(mode.q, base)
+    return soil_force(mode.q, mode.soil, y[SOIL_FRONT] - base, limit, y[MOLE_VELOCITY])
+
+
+@kernel
+def _creep(q, stretch):
+    """Return the velocity at which the soil's dashpot lets its spring relax [m s-1].
+
+    A stretch below rounding errors does not relax: else steps would never grow again.
+    """
+    is_relaxing = q.soil_damping > 0 and abs(stretch) > RELAXED
+    return q.soil_stiffness * stretch / q.soil_damping if is_relaxing else 0.0
+
+
+@kernel
+def relaxation_step(y, mode):
+    """Return the time in which the spring of soil that relaxes does so by a factor of e [s]."""
+    q, stretch = mode.q, 0.0
+    if mode.soil == APART:
+        stretch = y[SOIL_FRONT] - y[SOIL_BASE]
+    elif mode.soil == SLIDING:
+        limit = limit_of_soil(q, y[SOIL_BASE])
+        stretch = limit / q.soil_stiffness - y[SOIL_FRONT] + y[SOIL_BASE]
+    is_relaxing = _creep(q, stretch) != 0
+    return q.soil_damping / q.soil_stiffness if is_relaxing else math.inf
+
+
+@kernel
+def rates_in_soil(t, y, mode, dy):
+    """Set dy to the time derivative of the state y, of size 15, of a mole with soil ahead."""
+    rates(t, y, mode, dy)
+    q, x = mode.q, y[MOLE_VELOCITY]
+    dent = y[SOIL_FRONT] - y[SOIL_BASE]
+    force = pushed(y, mode)
+    dy[VELOCITY] += mode.push.on_bar * force
+    dy[MOLE_VELOCITY] += mode.push.on_mole * force
+    front, base = x, 0.0
+    if mode.soil == APART:
+        front = -_creep(q, dent)
+    elif mode.soil == SLIDING and q.soil_damping > 0:
+        base = x - _creep(q, force / q.soil_stiffness - dent)
+    elif mode.soil == SLIDING:
+        base = q.soil_stiffness * x / (q.soil_stiffness + q.soil_limit_gradient)
+    dy[SOIL_FRONT], dy[SOIL_BASE] = front, base
+    dy[SOIL_LOSS] = force * x - q.soil_stiffness * dent * (front - base)

@@ -41,6 +41,10 @@ class Mole(NamedTuple):
         [rad]
     control_period : float
         [s]
+    soil_stiffness, soil_damping : float
+        k [N m-1], c [kg s-1] of the soil.
+    soil_limit, soil_limit_gradient : float
+        F_0 [N], F' [N m-1]: the force at which the soil gives way.
     formulation : int
         `PHYSICAL`, `PAPERS` or `AS_PRINTED`.
     """
@@ -64,6 +68,10 @@ class Mole(NamedTuple):
     supply_speed: Any
     supply_phase: Any
     control_period: Any
+    soil_stiffness: Any
+    soil_damping: Any
+    soil_limit: Any
+    soil_limit_gradient: Any
     formulation: Any
 
 
@@ -90,5 +98,9 @@ def mole(p: Params, formulation: str) -> Mole:
         supply_speed=2 * math.pi * p.supply_frequency,
         supply_phase=p.supply_phase,
         control_period=1 / p.control_frequency,
+        soil_stiffness=p.soil_stiffness,
+        soil_damping=p.soil_damping,
+        soil_limit=p.soil_limit,
+        soil_limit_gradient=p.soil_limit_gradient,
         formulation=FORMULATIONS.index(formulation),
     )

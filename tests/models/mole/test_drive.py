@@ -3,15 +3,17 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from models.mole import MODEL, exact
 from models.mole.batch import batch
-from models.mole.drive import NEVER, NODES, OPEN, REACHED, Rates, Task, drive, elapsed
+from models.mole.drive import NODES, Rates, Task, drive
 from models.mole.lanes.rows import CURRENT, SQUARED
 from models.mole.parameters import Params, Settings
 from models.mole.response.machines import Machines
 from models.mole.theory import equations
 from models.mole.theory.system import mole
+from models.numerics.course import NEVER, OPEN, REACHED
 from uq.contract import Status
 from uq.sampling.named_values import read_settings
 
@@ -119,6 +121,36 @@ def test_a_constant_current_warms_to_the_closed_form(limit):
         np.testing.assert_allclose(done.warmths[0], settled, rtol=1e-9)
 
 
+@pytest.mark.parametrize("power", [14.0, 19.3, 25.0])
+def test_a_warm_mole_is_within_its_error(power):
+    """Rates that bend with the temperature, targets reached and not, with noise and without."""
+    rng = np.random.default_rng(8)
+    task = Task((), (5.0, 17.0, 31.0, 200.0), 0.0, 2.0, 400.0)
+
+    def speed(theta):
+        return 0.03 + 0.02 * np.sin(theta / 15)
+
+    def heat(theta):
+        return power * (1 - 2e-5 * theta**2)
+
+    settled = brentq(lambda theta: heat(theta) - theta / 2.0, 0, 100)
+    for noise in (0.0, 1e-4):
+        inside, most = [], 0.0
+        for _ in range(100 if noise else 1):
+
+            def rates(z, theta, noise=noise):
+                draw = noise * rng.standard_normal(2)
+                return speed(theta) + draw[0], noise, heat(theta) + 100 * draw[1], 100 * noise
+
+            done, _ = follow(task, rates)
+            expected = np.minimum(task.temperatures, settled)
+            inside.extend(abs(done.warmths - expected) <= np.add(done.warmth_errors, 1e-9))
+            inside.extend(abs(done.speeds - speed(expected)) <= np.add(done.speed_errors, 1e-12))
+            most = max(most, *done.speed_errors)
+        assert np.mean(inside) >= 0.9
+        assert most < 0.002
+
+
 @pytest.mark.parametrize("capacity", [4.0, 40.0, 400.0])
 def test_a_mole_warms_as_it_drives_through_ground_that_changes(capacity):
     """Against an integrator of ordinary differential equations, within the errors stated."""
@@ -169,14 +201,6 @@ def test_a_coil_may_cool_down_again():
     np.testing.assert_allclose(done.temperature.times[0], expected, rtol=0.02)
     assert done.temperature.fates[1] == NEVER  # it falls to 20 K in the end
     np.testing.assert_allclose(done.warmths[1], 20.0)
-
-
-def test_elapsed_is_the_integral_of_the_slowness():
-    places = np.linspace(0, 3, 20_001)
-    for first, last in (0.5, 0.1), (0.2, 0.2), (0.2, 0.2 * (1 + 1e-12)), (0.1, 2.0):
-        slowness = 1 / (first + (last - first) * places / 3)
-        expected = np.trapezoid(slowness, places)
-        np.testing.assert_allclose(elapsed(3.0, 3.0, first, last), expected, rtol=1e-6)
 
 
 # The real mole.

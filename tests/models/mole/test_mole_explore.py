@@ -4,10 +4,11 @@ from math import tau
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from models.mole import exact
 from models.mole.batch import batch
-from models.mole.explore import bifurcation_diagram, history, poincare_section
+from models.mole.explore import best_frequency, bifurcation_diagram, history, poincare_section
 from models.mole.parameters import FORMULATIONS, Params, Settings
 from models.mole.theory.system import mole
 
@@ -152,3 +153,23 @@ def test_a_diagram_shows_each_frequency_as_if_alone():
 def test_what_cannot_be_is_refused_in_a_line(call, says):
     with pytest.raises(ValueError, match=says):
         call()
+
+
+def test_intervals_of_a_low_quantile_cover_it_and_the_loss_too():
+    """Normal rates at three frequencies: the true quantiles are known."""
+    rng = np.random.default_rng(6)
+    at = np.repeat([7.0, 7.5, 8.0], 200)
+    means, sds = np.array([0.030, 0.040, 0.045]), np.array([0.004, 0.003, 0.010])
+    truth = means + sds * norm.ppf(0.1)
+    inside, losses, best, slow = [], [], [], []
+    for _ in range(200):
+        rates = np.concatenate([rng.normal(m, s, 200) for m, s in zip(means, sds, strict=True)])
+        ds = best_frequency(at, rates)
+        inside.append((ds.lower <= truth) & (truth <= ds.upper))
+        losses.append(bool(ds.loss_lower <= truth[1] - truth[2] <= ds.loss_upper))
+        best.append(float(ds.best))
+        slow.append(bool(ds.may_be_best[0]))
+    assert 0.94 <= np.mean(inside) <= 0.99 and np.mean(losses) >= 0.95
+    assert np.mean(np.equal(best, 7.5)) > 0.9 and np.mean(slow) < 0.05
+    with pytest.raises(ValueError, match="no mole at 9.0 Hz"):
+        best_frequency(at, rates, fixed=9.0)

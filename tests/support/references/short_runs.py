@@ -18,6 +18,8 @@ from models.beam import lanes  # noqa: E402
 from models.mole import exact  # noqa: E402
 from models.mole.exact import events  # noqa: E402
 from models.mole.parameters import Params as Mole  # noqa: E402
+from models.mole.parameters import Settings as MoleSettings  # noqa: E402
+from models.mole.response.machines import Machines  # noqa: E402
 from models.vibrator.equations.system import system, systems  # noqa: E402
 from models.vibrator.exact import propagator  # noqa: E402
 from models.vibrator.lanes.following import follow  # noqa: E402
@@ -45,6 +47,14 @@ def mole():
     begun = test_mole_exact.begun(Mole(supply_phase=0.3))
     motion = exact.propagate(*begun, 0.15, 1e-7, [0.03, 0.12])
     return np.concatenate([motion.samples[0], motion.samples[1], motion.state.y])
+
+
+def mole_in_soil():
+    p = Mole(control_frequency=7.0, soil_limit=20.0, soil_damping=99.0)
+    motion = exact.propagate(*test_mole_exact.begun(p), 0.15, 1e-7, [0.03, 0.12])
+    some = Machines.started(Mole._make(np.array([p]).T), MoleSettings(tolerance=1e-7))
+    some.run(np.arange(1), np.ones(1, np.int64))
+    return np.concatenate([motion.samples[1], motion.state.y, some.record[0]])
 
 
 def vibrator_orbit():
@@ -76,7 +86,15 @@ def vibrator_springs():
     return np.concatenate([*springs.time, *springs.left, *springs.right])
 
 
-RUNS = (bouncing_ball, beam, mole, vibrator_orbit, vibrator_exact, vibrator_springs)
+RUNS = (
+    bouncing_ball,
+    beam,
+    mole,
+    mole_in_soil,
+    vibrator_orbit,
+    vibrator_exact,
+    vibrator_springs,
+)
 
 
 def compiled_anew():
