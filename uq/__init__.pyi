@@ -29,6 +29,7 @@ from .learning.next_inspection import worth as worth
 from .learning.posterior_result import as_unit as as_unit
 from .machines.function import machine as machine
 from .machines.returned import Returned as Returned
+from .machines.returned import between as between
 from .machines.returned import censored as censored
 from .render.card import card as card
 from .render.trace.trace import trace as trace

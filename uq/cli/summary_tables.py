@@ -1,8 +1,9 @@
 """Card, answer and summary of a result, 80 columns wide."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from math import isnan
+from pathlib import Path
 from typing import NamedTuple
 
 from rich.text import Text
@@ -41,6 +42,13 @@ def show_findings(findings: Findings, *, explain: bool = False, full: bool = Fal
         text = Text(plain(line.text), style="magenta" if line.warns else "")
         text.stylize("bold", *line.bold)
         console.print(text, soft_wrap=True)
+
+
+def show_card(path: Path, notes: Iterable[str]) -> None:
+    """Print the card of a result that has just been written, and notes on it."""
+    show_findings(Findings(Result.open(path)))
+    for text in notes:
+        note(text)
 
 
 def show_summary(result: Result, summary: Summary, boundary: Statistic | None = None) -> None:

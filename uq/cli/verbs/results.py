@@ -152,6 +152,47 @@ def summary(
     _warn_if_altered(result)
 
 
+def import_(
+    data: Annotated[Path, typer.Argument(metavar="DATA.csv", help="Lives, one row each.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="OUT.nc", help="Where to write the result.")
+    ],
+    life: Annotated[
+        str, typer.Option(metavar="COLUMN", help="Life, or time of censoring; names the output.")
+    ],
+    unit: Annotated[
+        str, typer.Option(metavar="UNIT", help="Of all times, such as h; or in the headings.")
+    ] = "",
+    censored: Annotated[
+        str, typer.Option(metavar="COLUMN", help="1 where the life had not ended, else 0.")
+    ] = "",
+    low: Annotated[
+        str, typer.Option(metavar="COLUMN", help="Known to end after this time; 0 or empty: any.")
+    ] = "",
+    high: Annotated[
+        str, typer.Option(metavar="COLUMN", help="And not after this one; empty: has not ended.")
+    ] = "",
+    entered: Annotated[
+        str, typer.Option(metavar="COLUMN", help="Age at the start of observation (late entry).")
+    ] = "",
+    cause: Annotated[
+        str, typer.Option(metavar="COLUMN", help="Event that ended the life; empty: none.")
+    ] = "",
+    quiet: given.Quiet = False,
+) -> None:
+    """Read lives from the field into a result; other columns of numbers become inputs."""
+    from uq.cli import summary_tables
+    from uq.files.whole_files import check_target, write_result
+    from uq.result.life_record import RecordColumns, read_lives
+
+    check_target(output, 0)
+    columns = RecordColumns(life, unit, censored, low, high, entered, cause)
+    record, notes = read_lives(data, columns)
+    write_result(record, output)
+    if not quiet:
+        summary_tables.show_card(output, notes)
+
+
 def export(
     result: given.ResultFile,
     csv: Annotated[
