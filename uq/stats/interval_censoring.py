@@ -103,6 +103,16 @@ class _Problem:
     entry: _Places
     count: Floats
 
+    @cached_property
+    def is_open(self) -> NDArray[np.bool_]:
+        """Mask of rows that reach the last candidate: right-censored."""
+        return np.asarray(self.beyond == len(self.low))
+
+    @cached_property
+    def is_explicit(self) -> bool:
+        """Whether one EM step gives the estimate: every life is exact or right-censored."""
+        return bool(((self.beyond - self.first == 1) | self.is_open).all())
+
     def log_likelihood(self, total: Floats) -> float:
         """Return the log-likelihood from the cumulated masses, shape (m + 1,)."""
         of_row, of_entry = total[self.beyond] - total[self.first], total[-1] - total[self.entry]
@@ -129,13 +139,16 @@ class _Problem:
         the distribution function after its first k masses adds a Lagrange multiplier.
         """
         mass, size = np.diff(total), len(total)
-        share = self.count / np.maximum(total[self.beyond] - total[self.first], _TINY)
+        count = np.where(self.is_open, 0.0, self.count)
+        share = count / np.maximum(total[self.beyond] - total[self.first], _TINY)
         cover = np.cumsum(
             np.bincount(self.first, share, size) - np.bincount(self.beyond, share, size)
         )[:-1]
         ended = mass * np.maximum(cover, 0.0)
+        # At risk: those that entered, without those that ended or were censored before.
         entered = np.cumsum(np.bincount(self.entry, self.count, size))[:-1]
-        at_risk = np.maximum(entered - np.append(0.0, np.cumsum(ended))[:-1], ended)
+        censored = np.cumsum(np.bincount(self.first, self.count - count, size))[:-1]
+        at_risk = np.maximum(entered - censored - np.append(0.0, np.cumsum(ended))[:-1], ended)
         if fixed is not None:
             return _pinned(ended, at_risk, *fixed)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -272,9 +285,9 @@ def _maximum(
         steps += 1
         after_em = problem.em_step(total, fixed)
         likelihood = problem.log_likelihood(after_em)
-        if likelihood >= best:
+        if likelihood >= best or problem.is_explicit:
             total, best = after_em, likelihood
-        if size > 2:
+        if size > 2 and not problem.is_explicit:
             target, step = problem.icm_step(total, fixed), 1.0
             while step > 1e-4:
                 trial = total + step * (target - total)
@@ -283,7 +296,7 @@ def _maximum(
                     total, best = trial, likelihood
                     break
                 step /= 2
-        gap = _gap(problem, total, fixed)
+        gap = 0.0 if problem.is_explicit else _gap(problem, total, fixed)
         if gap < enough:
             break
     return total, best, gap, steps
@@ -353,6 +366,10 @@ class LikelihoodIntervals:
         """The nonparametric maximum likelihood estimate."""
         return turnbull(self.lives)
 
+    @cached_property
+    def _answers(self) -> dict[float, tuple[Estimate, tuple[float, float]]]:
+        return {}
+
     def ended_by(self, time: float) -> tuple[Estimate, tuple[float, float]]:
         """Estimate P(T <= t), and the range that the data leave open.
 
@@ -380,6 +397,11 @@ class LikelihoodIntervals:
         .. [3] M. Banerjee, J. A. Wellner, "Likelihood ratio tests for monotone functions", Ann.
            Stat. 29, 1699-1731 (2001).
         """
+        if time not in self._answers:
+            self._answers[time] = self._ended_by(time)
+        return self._answers[time]
+
+    def _ended_by(self, time: float) -> tuple[Estimate, tuple[float, float]]:
         least, most = (float(end[0]) for end in self.estimate.ended_by(np.array([time])))
         low, high = self._ends(time, least, most)
         if least != most:
