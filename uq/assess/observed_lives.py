@@ -10,11 +10,13 @@ from uq.assess.counted_rows import ASSUMES, CountedRows
 from uq.assess.fact import Functions
 from uq.assess.sample import Curve
 from uq.contract import Floats
-from uq.stats.estimate import Estimate
+from uq.stats.estimate import NOTHING, Estimate
 from uq.stats.interval_censoring import LifeIntervals, LikelihoodIntervals, turnbull
+from uq.stats.moments import Moments
 from uq.text.numbers import counted
 
 _MOST_TIMES = 60  # of a survival curve, each with a likelihood-ratio interval
+_OPEN = 0.005  # width of the range of a probability that the data leave open, worth stating
 _DEPENDENT = "intervals need independent rows of equal weight"
 
 
@@ -34,6 +36,17 @@ class ObservedLives(CountedRows):
             "life_quantile": (ObservedLives.life_quantile, *by_likelihood),
             "ended_by": by_likelihood,
         }
+
+    @property
+    def is_simple_random(self) -> bool:
+        """Return whether rows are independent and represent all lives: none entered late."""
+        return super().is_simple_random and self.element.entered is None
+
+    def moments(self) -> Moments:
+        """Estimate mean, standard deviation and tail: of rows that entered late there are none."""
+        if self.element.entered is not None:
+            return Moments(NOTHING, NOTHING, None, None)
+        return super().moments()
 
     @cached_property
     def lives(self) -> LifeIntervals:
@@ -109,17 +122,20 @@ class ObservedLives(CountedRows):
             reason = "it is after the last observation"
             return Estimate(reason=reason), Estimate(reason=reason)
         below = self._at(time)
-        return Estimate(1 - below.value, 1 - below.high, 1 - below.low, below.reason, ASSUMES), below
+        above = Estimate(
+            1 - below.value, 1 - below.high, 1 - below.low, below.reason, below.assumes
+        )
+        return above, below
 
     def _at(self, time: float) -> Estimate:
         """Estimate P(T <= t)."""
         estimate, (least, most) = self._likelihood.ended_by(time)
-        reason = ""
-        if most - least > 0.005:
-            reason = f"the data allow any value from {least:.3g} to {most:.3g}"
+        assumes = ASSUMES
+        if most - least > _OPEN:
+            assumes += f"; P(T <= t) may be {least:.3g} to {most:.3g} for these data"
         if not self.dependence.is_none:
-            return Estimate(estimate.value, reason=_DEPENDENT, assumes=ASSUMES)
-        return Estimate(*map(float, estimate.numbers), reason, ASSUMES)
+            return Estimate(estimate.value, reason=_DEPENDENT, assumes=assumes)
+        return Estimate(*map(float, estimate.numbers), assumes=assumes)
 
     def life_quantile(self, probability: float) -> Estimate:
         """Estimate the time by which a share has ended.

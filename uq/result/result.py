@@ -47,6 +47,7 @@ from uq.sampling.designs import DESIGNS, Design
 from uq.sampling.levels import CHANCE, LEVELS
 from uq.stats.dependent_rows import Dependence
 from uq.stats.importance_weights import ImportanceWeights
+from uq.study.installed_models import FIELD_RECORD
 from uq.study.file import AnalysisTable, StudyFile, Tied
 from uq.study.reading import study_of_result
 from uq.text.numbers import counted
@@ -127,6 +128,11 @@ class Result:
     def design(self) -> Design:
         """The design of the rows."""
         return DESIGNS[self.design_name]
+
+    @property
+    def is_field_record(self) -> bool:
+        """Whether the rows are lives from the field, which no model computed."""
+        return self.dataset.attrs["model"] == FIELD_RECORD
 
     @property
     def is_random(self) -> bool:

@@ -303,12 +303,23 @@ def compare(
             autocompletion=completion.complete_result,
         ),
     ],
+    output: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="The lifetime to set imported lives beside.",
+            autocompletion=completion.complete_output,
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="F.png", help="Draw imported and simulated lives here.")
+    ] = None,
     json: given.Json = False,
 ) -> None:
-    """Show how two studies of one model differ."""
+    """Show how two studies of one model differ, or lives from the field and a study."""
     from uq.cli import compare
 
-    compare.compare(first, second, json)
+    compare.compare(first, second, json, output, plot)
 
 
 def what_if(
