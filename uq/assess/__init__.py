@@ -33,7 +33,7 @@ Reading order; each part imports only those above it:
     statistics             the statistics of an output: ``table`` lists them
     survival               survival curve of a life
     components_by_level    variance components of outputs
-    life_fit               Weibull and lognormal laws fitted to lifetimes
+    life_fit               laws fitted to lifetimes
     two_fidelities         estimate from the rows of a result and many more rows of a cheap
     summary                summary of a result
     comparison             compare two studies of one model

@@ -214,6 +214,8 @@ def _fit(fit: Fit) -> dict[str, Any]:
     entry["parameters"] = {
         name: estimate_json.numbers(estimate) for name, estimate in fit.parameters.items()
     }
+    if isfinite(fit.log_likelihood):
+        entry |= {"log_likelihood": fit.log_likelihood, "aic": fit.aic}
     entry["assumes"] = fit.assumes
     for name, estimate in fit.b_lives.items():
         entry[name] = estimate_json.numbers(estimate) | {"extrapolated": name in fit.extrapolated}

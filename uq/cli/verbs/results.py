@@ -114,7 +114,7 @@ def summary(
     result: given.ResultFile,
     regime: given.Regime = None,
     fits: Annotated[
-        bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
+        bool, typer.Option("--fits", help="Fit laws to lifetimes by maximum likelihood.")
     ] = False,
     plain: given.Plain = False,
     explain: given.Explain = False,
