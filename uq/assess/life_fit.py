@@ -1,6 +1,6 @@
 """Laws fitted to lifetimes by maximum likelihood, and refused where they do not fit."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import nan
@@ -90,7 +90,9 @@ class Fit:
         return 2 * len(self.parameters) - 2 * self.log_likelihood
 
 
-def fits_of(element: Element, independent: bool, of_record: bool = False) -> dict[str, Fit]:
+def fits_of(
+    element: Element, independent: bool, of_record: bool = False, laws: Collection[str] = tuple(LAWS)
+) -> dict[str, Fit]:
     """Fit every law to one element of a lifetime; name of the law -> `Fit`.
 
     Weibull and lognormal laws of plain rows are tested. All laws of lives from the field (however
@@ -102,9 +104,14 @@ def fits_of(element: Element, independent: bool, of_record: bool = False) -> dic
     J. F. Lawless, "Statistical models and methods for lifetime data", 2nd ed., Wiley (2003), 5.
     """
     by_likelihood = of_record or element.has_intervals_or_entries
-    fits = {} if by_likelihood else {law: _fit(law, element, independent) for law in FAMILIES}
+    tested = () if by_likelihood else [law for law in FAMILIES if law in laws]
+    fits = {law: _fit(law, element, independent) for law in tested}
     least = 0 if by_likelihood else MIN_ENDED
-    others = {law: _fit_by_likelihood(law, element, independent, least) for law in LAWS if law not in fits}
+    others = {
+        law: _fit_by_likelihood(law, element, independent, least)
+        for law in laws
+        if law not in fits
+    }
     return fits | others
 
 
