@@ -233,8 +233,8 @@ def compare(first: AnyResult, second: AnyResult, output: str | None = None) -> p
         for name, statistics in compared.shares.items()
         for label, statistic in statistics.items()
     }
-    for name, output in compared.outputs.items():
-        pairs |= {(name, statistic.first.label): statistic for statistic in output.statistics}
+    for name, of_output in compared.outputs.items():
+        pairs |= {(name, statistic.first.label): statistic for statistic in of_output.statistics}
     lines = [
         [
             *(side.estimate.finite.value for side in (statistic.first, statistic.second)),
@@ -304,7 +304,10 @@ def _curves(pair: Pair, elements: list[Element]) -> SurvivalCurves:
     if len(every) > _MOST_TIMES:
         every = every[np.linspace(0, len(every) - 1, _MOST_TIMES).round().astype(int)]
     both = [
-        tuple(Estimate(*map(float, numbers)) for numbers in zip(*sample.survival(every), strict=True))
+        tuple(
+            Estimate(float(value), float(low), float(high))
+            for value, low, high in zip(*sample.survival(every), strict=True)
+        )
         for sample in samples
     ]
     apart = tuple(
@@ -334,8 +337,8 @@ def _named_as(record: Result, other: Result, output: str | None) -> Result:
     unit = record.outputs[mine].unit
     if unit != element.units:
         raise InputError(
-            f"the lives '{mine}' are in '{unit}', '{element.name}' in '{element.units}'; import them"
-            " again with --unit"
+            f"the lives '{mine}' are in '{unit}', '{element.name}' in '{element.units}';"
+            " import them again with --unit"
         )
     ds = record.dataset
     companions = {name: name.replace(mine, element.output, 1) for name in map(str, ds.data_vars)}

@@ -91,7 +91,10 @@ class Fit:
 
 
 def fits_of(
-    element: Element, independent: bool, of_record: bool = False, laws: Collection[str] = tuple(LAWS)
+    element: Element,
+    independent: bool,
+    of_record: bool = False,
+    laws: Collection[str] = tuple(LAWS),
 ) -> dict[str, Fit]:
     """Fit every law to one element of a lifetime; name of the law -> `Fit`.
 
@@ -108,9 +111,7 @@ def fits_of(
     fits = {law: _fit(law, element, independent) for law in tested}
     least = 0 if by_likelihood else MIN_ENDED
     others = {
-        law: _fit_by_likelihood(law, element, independent, least)
-        for law in laws
-        if law not in fits
+        law: _fit_by_likelihood(law, element, independent, least) for law in laws if law not in fits
     }
     return fits | others
 
@@ -129,16 +130,16 @@ def _fit_by_likelihood(law: str, element: Element, independent: bool, least: int
     if problem := _problem(life, ended, independent, least, law == "exponential"):
         return Fit(rows, refused=problem)
     try:
-        found = fit_law(law, lives, B_LIVES)
+        fitted = fit_law(law, lives, B_LIVES)
     except NoMaximumError as refusal:
         return Fit(rows, refused=str(refusal))
     return Fit(
         rows,
-        parameters=found.parameters,
-        b_lives=found.quantiles,
+        parameters=fitted.parameters,
+        b_lives=fitted.quantiles,
         extrapolated=frozenset(name for name, p in B_LIVES.items() if not is_within(p, rows)),
         assumes=LIKELIHOOD_ASSUMES,
-        log_likelihood=found.log_likelihood,
+        log_likelihood=fitted.log_likelihood,
     )
 
 

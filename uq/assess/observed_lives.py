@@ -1,5 +1,6 @@
 """Sample of lives known within intervals, or of rows that came under observation late."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isfinite, nan
@@ -94,7 +95,9 @@ class ObservedLives(CountedRows):
         if self.element.entered is None:
             return super().quantile(probability)
         life = self.life_quantile(probability)
-        return life if self.refusal or isfinite(life.value) else Estimate(reason=_beyond(self.lives))
+        return (
+            life if self.refusal or isfinite(life.value) else Estimate(reason=_beyond(self.lives))
+        )
 
     def probability_below(self, threshold: float) -> Estimate:
         """Estimate P(T < t); by the likelihood with late entry."""
@@ -135,7 +138,8 @@ class ObservedLives(CountedRows):
             assumes += f"; P(T <= t) may be {least:.3g} to {most:.3g} for these data"
         if not self.dependence.is_none:
             return Estimate(estimate.value, reason=_DEPENDENT, assumes=assumes)
-        return Estimate(*map(float, estimate.numbers), assumes=assumes)
+        value, low, high = map(float, estimate.numbers)
+        return Estimate(value, low, high, assumes=assumes)
 
     def life_quantile(self, probability: float) -> Estimate:
         """Estimate the time by which a share has ended.
@@ -172,8 +176,8 @@ class ObservedLives(CountedRows):
         times = times[np.isfinite(times) & (times > 0)]
 
         def interval(time: float) -> tuple[float, float]:
-            found = self._likelihood.ended_by(time)[0]
-            return float(found.low), float(found.high)
+            estimate = self._likelihood.ended_by(time)[0]
+            return float(estimate.low), float(estimate.high)
 
         first = _first_true(times, lambda t: interval(t)[1] >= probability)
         last = _first_true(times, lambda t: interval(t)[0] > probability)
@@ -212,7 +216,7 @@ class ObservedLives(CountedRows):
         return Curve(*numbers)
 
 
-def _first_true(times: Floats, holds) -> int | None:  # type: ignore[no-untyped-def]
+def _first_true(times: Floats, holds: Callable[[float], bool]) -> int | None:
     """Return the first place at which a condition holds, that holds from then on."""
     low, high = 0, len(times)
     while low < high:
@@ -241,5 +245,3 @@ def _empty_risk_set(lives: LifeIntervals) -> float | None:
     entered, seen_until = lives.entered[order], np.maximum.accumulate(last[order])
     apart = np.flatnonzero(entered[1:] >= seen_until[:-1])
     return float(seen_until[apart[0]]) if len(apart) else None
-
-

@@ -104,6 +104,6 @@ def begin(
 ) -> None:
     """Probabilistic lifetime and sensitivity studies of vibro-impact machines."""
     if context.invoked_subcommand is None:
-        from uq.cli.guide import guide
+        from uq.cli.models import guide
 
         guide()

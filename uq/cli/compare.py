@@ -72,7 +72,10 @@ def _show(differences: Comparison, first: Path, second: Path) -> None:
             unit = unit_of(differences.outputs[name].units, float(curves.time[worst]))
             place = in_unit(float(curves.time[worst]), unit)
             ends = f" ({interval_text(apart)})" if apart.has_interval else ""
-            note(f"{name}: the survival curves differ most at {place}: B - A {apart.value:.2g}{ends}.")
+            note(
+                f"{name}: the survival curves differ most at {place}:"
+                f" B - A {apart.value:.2g}{ends}."
+            )
     note("*: the interval excludes no difference. " + _POINTWISE)
     for text in (*bought(differences), *differences.notes):
         note(text)

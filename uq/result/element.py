@@ -231,7 +231,7 @@ def elements_in(
         cut = np.zeros(len(column), dtype=bool)
         if censored is not None:
             cut = np.asarray(censored[(slice(None), *index)]).astype(bool) & ~absent
-        of_place = {
+        of_place: dict[str, Any] = {
             key: np.asarray(array[(slice(None), *index)]) for key, array in (beside or {}).items()
         }
         yield Element(

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, isnan, nan
 from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -59,7 +60,7 @@ class RecordColumns:
 
 
 @dataclass(frozen=True)
-class _Table:
+class _RecordTable:
     """The cells of a CSV file by column, with the unit in each heading and the line of each row."""
 
     path: Path
@@ -85,14 +86,18 @@ class _Table:
 
         NaN stands for "not allowed" in `empty`.
         """
-        return np.array([self._time(i, name, cell, empty) for i, cell in enumerate(self.column(name))])
+        return np.array(
+            [self._time(i, name, cell, empty) for i, cell in enumerate(self.column(name))]
+        )
 
     def _time(self, row: int, name: str, cell: str, empty: float) -> float:
         if cell.lower() in _NO_END and not isnan(empty) and (cell == "" or empty == inf):
             return empty
         number = number_of(cell)
         if not isfinite(number):
-            raise self.fault(row, name, f"must be a time, as a finite number: '{cell}'{_remedy(cell)}")
+            raise self.fault(
+                row, name, f"must be a time, as a finite number: '{cell}'{_remedy(cell)}"
+            )
         if number < 0:
             raise self.fault(row, name, f"must not be negative: {cell}")
         return number
@@ -168,7 +173,7 @@ def read_lives(path: str | Path, columns: RecordColumns) -> tuple[xr.Dataset, li
     return _as_result(ds, table.path, inputs, n), notes
 
 
-def _read(path: Path) -> _Table:
+def _read(path: Path) -> _RecordTable:
     if kind := node(path):
         raise InputError(f"{path}: is {kind}, not a CSV file")
     try:
@@ -205,10 +210,10 @@ def _read(path: Path) -> _Table:
         raise InputError(f"{path}: has {len(rows)} rows (allowed: 1 to {MAX_VALUES})")
     cells = {name: [row[i] for _, row in rows] for i, name in enumerate(names)}
     units = {name: match[2] for name, match in zip(names, parts, strict=True) if match and match[2]}
-    return _Table(path, cells, units, [line for line, _ in rows])
+    return _RecordTable(path, cells, units, [line for line, _ in rows])
 
 
-def _unit(table: _Table, columns: RecordColumns) -> tuple[str, float]:
+def _unit(table: _RecordTable, columns: RecordColumns) -> tuple[str, float]:
     """Return the unit of lives in a result, and the size of the unit of the record in it."""
     times = (columns.life, columns.low, columns.high, columns.entered)
     stated = {f"column '{name}'": table.units[name] for name in times if name in table.units}
@@ -219,9 +224,11 @@ def _unit(table: _Table, columns: RecordColumns) -> tuple[str, float]:
             raise InputError(f"{table.path}: {who}: unit '{unit}': {fault}")
     (first, unit), *others = list(stated.items()) or [("", "1")]
     for other, another in others:
-        if read_quantity(f"1 {another}") != read_quantity(f"1 {unit}") if _both_times(
-            unit, another
-        ) else another != unit:
+        if (
+            read_quantity(f"1 {another}") != read_quantity(f"1 {unit}")
+            if _both_times(unit, another)
+            else another != unit
+        ):
             raise InputError(
                 f"{table.path}: two units of time: {first} is in '{unit}', {other} in '{another}';"
                 " convert one of them"
@@ -236,7 +243,7 @@ def _both_times(*units: str) -> bool:
     return all(unit != "1" and read_quantity(f"1 {unit}").dimensions == {"s": 1} for unit in units)
 
 
-def _lives(table: _Table, columns: RecordColumns) -> dict[str, NDArray[np.generic]]:
+def _lives(table: _RecordTable, columns: RecordColumns) -> dict[str, Any]:
     """Return lower and upper bounds, the mask of those that are not exact, and the entries."""
     if bool(columns.low) != bool(columns.high):
         raise InputError("--low and --high belong together; name both columns")
@@ -250,7 +257,9 @@ def _lives(table: _Table, columns: RecordColumns) -> dict[str, NDArray[np.generi
             low, high = np.where(exact, life, low), np.where(exact, life, high)
         for row in np.flatnonzero(low > high)[:1]:
             raise table.fault(
-                row, columns.low, f"must not be above '{columns.high}': {low[row]:g} > {high[row]:g}"
+                row,
+                columns.low,
+                f"must not be above '{columns.high}': {low[row]:g} > {high[row]:g}",
             )
         censored = low < high
     else:
@@ -259,7 +268,7 @@ def _lives(table: _Table, columns: RecordColumns) -> dict[str, NDArray[np.generi
         if columns.censored:
             censored = np.array(list(_flags(table, columns.censored)))
         high = np.where(censored, inf, low)
-    lives: dict[str, NDArray[np.generic]] = {"low": low, "high": high, "censored": censored}
+    lives: dict[str, Any] = {"low": low, "high": high, "censored": censored}
     if columns.entered:
         entered = table.times(columns.entered, 0.0)
         end = np.where(np.isfinite(high), high, low)
@@ -273,7 +282,7 @@ def _lives(table: _Table, columns: RecordColumns) -> dict[str, NDArray[np.generi
     return lives
 
 
-def _flags(table: _Table, column: str) -> Iterator[bool]:
+def _flags(table: _RecordTable, column: str) -> Iterator[bool]:
     for row, cell in enumerate(table.column(column)):
         if cell.lower() not in (*_TRUE, *_FALSE):
             raise table.fault(row, column, f"must be 1 (censored) or 0 (ended): '{cell}'")
@@ -281,7 +290,7 @@ def _flags(table: _Table, column: str) -> Iterator[bool]:
 
 
 def _causes(
-    table: _Table, columns: RecordColumns, has_no_end: NDArray[np.bool_]
+    table: _RecordTable, columns: RecordColumns, has_no_end: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int8], tuple[str, ...]]:
     """Return the code of the cause of each row, and the causes."""
     if not columns.cause:
@@ -316,9 +325,7 @@ def _identifier(name: str) -> str:
     return word if word.isidentifier() else f"column_{word}"
 
 
-def _inputs(
-    table: _Table, used: Sequence[str], life: str
-) -> tuple[dict[str, Floats], list[str]]:
+def _inputs(table: _RecordTable, used: Sequence[str], life: str) -> tuple[dict[str, Floats], list[str]]:
     """Return the columns of numbers that say nothing of the life, and notes on the others."""
     inputs, notes = dict[str, Floats](), list[str]()
     taken = {"row", "replicate", "group", "block", "status", "world", "unit", "repeat", "rerun"}
@@ -344,7 +351,6 @@ def _inputs(
 def _record_model(name: str, output: Output, inputs: Mapping[str, Floats]) -> Model:
     """Return the declarations of a record as those of a model that computes nothing."""
     from collections import namedtuple
-    from typing import Annotated, Any
 
     from uq.machines.row_by_row import NoSettings
 

@@ -47,8 +47,8 @@ from uq.sampling.designs import DESIGNS, Design
 from uq.sampling.levels import CHANCE, LEVELS
 from uq.stats.dependent_rows import Dependence
 from uq.stats.importance_weights import ImportanceWeights
-from uq.study.installed_models import FIELD_RECORD
 from uq.study.file import AnalysisTable, StudyFile, Tied
+from uq.study.installed_models import FIELD_RECORD
 from uq.study.reading import study_of_result
 from uq.text.numbers import counted
 from uq.text.units import ReadableUnit, typical, unit_of

@@ -124,7 +124,9 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
         role = variable.attrs.get("role")
         if role not in _ROLES:
             continue
-        if role in ("input", "output", "censored", "high", "entered") and variable.dims[:1] != ("row",):
+        if role in ("input", "output", "censored", "high", "entered") and variable.dims[:1] != (
+            "row",
+        ):
             yield f"'{name}' has no row dimension"
         if (role == "input" and variable.ndim != 1) or (role == "fixed" and variable.ndim):
             yield f"'{name}' is not one number{' per row' * (role == 'input')}"

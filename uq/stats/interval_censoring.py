@@ -6,6 +6,7 @@ T > e (left truncation). The estimate puts mass on finitely many disjoint interv
 its place does not change the likelihood: there the data cannot tell the distribution function.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, log, nan, sqrt
@@ -171,13 +172,14 @@ class _Problem:
         curvature = (
             np.bincount(self.beyond, double, size) + np.bincount(self.first, double, size)
         )[1:-1]
-        wanted = total[1:-1] + slope / np.where(curvature > 0, curvature, 1.0)
+        weights: Floats = curvature.astype(float)
+        wanted = total[1:-1] + slope / np.where(weights > 0, weights, 1.0)
         if fixed is None:
-            target = _minorant(wanted, curvature, 0.0, 1.0)
+            target = _minorant(wanted, weights, 0.0, 1.0)
         else:
             k, value = fixed
-            before = _minorant(wanted[: k - 1], curvature[: k - 1], 0.0, value)
-            after = _minorant(wanted[k:], curvature[k:], value, 1.0)
+            before = _minorant(wanted[: k - 1], weights[: k - 1], 0.0, value)
+            after = _minorant(wanted[k:], weights[k:], value, 1.0)
             target = np.concatenate([before, [value], after])
         return np.concatenate([[0.0], target, [1.0]])
 
@@ -258,7 +260,8 @@ def _problem(lives: LifeIntervals, split: float | None = None) -> _Problem:
     entry = np.searchsorted(starts, _key(lives.entered, np.full(len(lives), _AFTER)), side="left")
     entry = np.where(lives.entered > 0, entry, 0)
     rows, count = np.unique(np.stack([first, beyond, entry]), axis=1, return_counts=True)
-    return _Problem(low, high, *rows.astype(np.intp), count.astype(float))
+    first, beyond, entry = rows.astype(np.intp)
+    return _Problem(low, high, first, beyond, entry, count.astype(float))
 
 
 def _key(time: Floats, kind: NDArray[np.integer]) -> Floats:
@@ -429,7 +432,7 @@ class LikelihoodIntervals:
         high = 1.0 if most >= 1 - tiny else _crossing(root, critical, most, 1.0)
         lives = self.lives
         seen_beyond = float(((lives.low >= time) & (lives.entered < time)).sum())
-        seen_ended = float(((lives.high <= time)).sum())
+        seen_ended = float((lives.high <= time).sum())
         if most <= tiny and seen_beyond:  # nobody ended: the exact binomial bound
             high = max(high, 1 - (1 - upper) ** (1 / seen_beyond))
         if least >= 1 - tiny and seen_ended:
@@ -437,7 +440,7 @@ class LikelihoodIntervals:
         return low, high
 
 
-def _crossing(root, critical: float, start: float, end: float) -> float:  # type: ignore[no-untyped-def]
+def _crossing(root: Callable[[float], float], critical: float, start: float, end: float) -> float:
     """Return where the root of the likelihood ratio, 0 at `start`, crosses its critical value."""
     inner, outer = start, end
     at_inner, at_outer = 0.0, inf

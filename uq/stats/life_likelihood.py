@@ -250,7 +250,11 @@ class _Likelihood:
         return value if isfinite(value) else -_WORST
 
     def _value(self, theta: Floats) -> float:
-        scale, others, law = exp(np.clip(theta[0], -200, 200)), np.clip(theta[1:], -40, 40), self.law
+        scale, others, law = (
+            exp(np.clip(theta[0], -200, 200)),
+            np.clip(theta[1:], -40, 40),
+            self.law,
+        )
         shift = self.threshold(others)
 
         def survival(time: Floats) -> Floats:
@@ -425,9 +429,9 @@ def _curvature(likelihood: _Likelihood, theta: Floats) -> Floats:
             values = [
                 likelihood(theta + a * moves[i] + b * moves[j]) for a in (1, -1) for b in (1, -1)
             ]
-            matrix[i, j] = matrix[j, i] = (
-                values[0] - values[1] - values[2] + values[3]
-            ) / (4 * step**2)
+            matrix[i, j] = matrix[j, i] = (values[0] - values[1] - values[2] + values[3]) / (
+                4 * step**2
+            )
     return matrix
 
 
@@ -530,5 +534,3 @@ def _profile(
         return float(back(at))
 
     return Estimate(value, end(-1.0), end(1.0))
-
-

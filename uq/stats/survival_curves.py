@@ -243,14 +243,14 @@ def aalen_johansen(
         hazard = every / (at_risk * (at_risk - every))
         # The factor is 0 for the last end, after which nothing changes.
         hazard = np.where(at_risk > every, hazard, 0.0)
-        own = before**2 * mine * (at_risk - mine) / at_risk**3.0
+        of_cause = before**2 * mine * (at_risk - mine) / at_risk**3.0
         cross = before * mine / at_risk**2.0
     zeroth, first, second = (np.cumsum(hazard * share**p) for p in (0, 1, 2))
     variance = (
         share**2 * zeroth
         - 2 * share * first
         + second
-        + np.cumsum(own)
+        + np.cumsum(of_cause)
         - 2 * (share * np.cumsum(cross) - np.cumsum(cross * share))
     )
     place = np.searchsorted(ends, time, side="right")

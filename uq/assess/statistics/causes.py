@@ -1,9 +1,10 @@
 """Cumulative incidence of each cause that may end a life, and B-lives by cause."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import isfinite, nan
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uq.assess.counted_rows import ASSUMES
 from uq.assess.failed_rows import bounded
@@ -57,7 +58,7 @@ def causes(element: Element, context: Context) -> Iterator[Statistic]:
             )
 
 
-def _hits(code: int, time: float):  # type: ignore[no-untyped-def]
+def _hits(code: int, time: float) -> Callable[[Element], SelectedRows | None]:
     """Return a function from elements to the rows that the cause ended by a time."""
 
     def rows(element: Element) -> SelectedRows | None:
@@ -97,15 +98,15 @@ def incidence(element: Element, context: Context, code: int, time: float) -> Est
     values, codes, entered = at_risk(element)
     if time > values[np.isfinite(values)].max(initial=0.0) and (codes < 0).any():
         return Estimate(reason="it is after the last observation")
-    found = aalen_johansen(values, codes, entered, code, np.array([time]))
-    value = float(found.share[0])
+    estimate = aalen_johansen(values, codes, entered, code, np.array([time]))
+    value = float(estimate.share[0])
     if not context.sample(element).dependence.is_none:
         return Estimate(value, reason="intervals need independent rows", assumes=ASSUMES)
     low, high = incidence_interval(values, codes, entered, code, np.array([time]))
     return Estimate(value, float(low[0]), float(high[0]), assumes=ASSUMES)
 
 
-def at_risk(element: Element) -> tuple[Floats, Floats, Floats]:
+def at_risk(element: Element) -> tuple[Floats, NDArray[np.int8], Floats]:
     """Return lives, causes and entries of the rows with a life."""
     assert element.causes is not None
     kept = element.present
@@ -134,5 +135,3 @@ def life_by_cause(element: Element, context: Context, code: int, probability: fl
     if not isfinite(value):
         return Estimate(reason=f"fewer are ended by '{element.declared.causes[code]}'")
     return Estimate(value, first(high), first(low), assumes=ASSUMES)
-
-

@@ -368,7 +368,7 @@ def trace(
     json: given.Json = False,
 ) -> int:
     """Show where a number comes from, and compute it again."""
-    from uq.cli import trace as tracing
+    from uq.cli import sensitivity as tracing
 
     return tracing.trace(result, key, model, json)
 

@@ -7,8 +7,8 @@ from uq.assess.answer.compared_indices import method_for
 from uq.assess.answer.events import events_of
 from uq.assess.answer.quantities import by_importance
 from uq.assess.findings import Findings
-from uq.assess.row_inputs import independent_inputs
 from uq.assess.life_fit import fits_of
+from uq.assess.row_inputs import independent_inputs
 from uq.assess.sampled_laws import laws_and_values
 from uq.assess.sensitivities import TargetIndices, methods
 from uq.assess.statistic import Context
