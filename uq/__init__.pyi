@@ -34,6 +34,7 @@ from .machines.returned import censored as censored
 from .render.card import card as card
 from .render.trace.trace import trace as trace
 from .result.elements import labels as labels
+from .result.life_record import import_lives as import_lives
 from .result.result_file import open_result as open_result
 from .study.definition import Study as Study
 from .study.provenance import __version__ as __version__

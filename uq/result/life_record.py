@@ -3,6 +3,7 @@
 import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import inf, isfinite, isnan, nan
 from pathlib import Path
@@ -19,7 +20,8 @@ from uq.result.result_file import build_rows
 from uq.sampling.listed_values import MAX_VALUES
 from uq.study.changes import study_text
 from uq.study.installed_models import FIELD_RECORD
-from uq.text.quantities import fault_of_unit, read_quantity
+from uq.study.reading import study_of_result
+from uq.text.quantities import fault_of_unit, misfit, read_quantity
 
 _HEADING = re.compile(r"\s*(.*?)\s*(?:\[([^\]]*)\]\s*)?")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
@@ -121,7 +123,9 @@ def _remedy(cell: str) -> str:
     return ""
 
 
-def read_lives(path: str | Path, columns: RecordColumns) -> tuple[xr.Dataset, list[str]]:
+def read_lives(
+    path: str | Path, columns: RecordColumns, thresholds: Sequence[float | str] = ()
+) -> tuple[xr.Dataset, list[str]]:
     """Return a record of lives as a result, and notes on what it leaves out.
 
     Parameters
@@ -129,6 +133,8 @@ def read_lives(path: str | Path, columns: RecordColumns) -> tuple[xr.Dataset, li
     path : path-like
         CSV with a heading; a heading may state the unit of its column: ``life [h]``.
     columns : RecordColumns
+    thresholds : sequence of float or str, optional
+        Of the life, for its [analysis].
 
     Returns
     -------
@@ -170,7 +176,60 @@ def read_lives(path: str | Path, columns: RecordColumns) -> tuple[xr.Dataset, li
     if "entered" in lives:
         attrs = {"role": "entered", "units": unit, "long_name": f"start of observation of {name}"}
         ds[entered_name(name)] = ("row", lives["entered"] * size, attrs)
-    return _as_result(ds, table.path, inputs, n), notes
+    for at in thresholds:
+        if isinstance(at, str) and (why := _misfit(at, name, unit)):
+            raise InputError(f"--threshold '{at}': {why}")
+    asked = {"thresholds": {name: list(thresholds)}} if thresholds else {}
+    return _as_result(ds, table.path, inputs, asked), notes
+
+
+def import_lives(
+    path: str | Path,
+    life: str,
+    *,
+    unit: str = "",
+    censored: str = "",
+    low: str = "",
+    high: str = "",
+    entered: str = "",
+    cause: str = "",
+    thresholds: Sequence[float | str] = (),
+) -> xr.Dataset:
+    """Read lives from the field into a result, as ``uq import`` does.
+
+    Parameters
+    ----------
+    path : path-like
+        CSV with a heading, which may state units: ``life [h]``. Other columns of numbers become
+        inputs.
+    life : str
+        Column of the life, or of the time of censoring; it names the output.
+    unit : str
+        Of all times, if the headings do not state it.
+    censored : str, optional
+        Column that is 1 where the life had not ended.
+    low, high : str, optional
+        Columns between which the life ended, in place of `censored`.
+    entered : str, optional
+        Column of the age at which a row came under observation.
+    cause : str, optional
+        Column of the event that ended the life.
+    thresholds : sequence, optional
+        Times of which to report the probability that the life has ended, in seconds or the unit of
+        the life, or as text with a unit: ``"2 years"``.
+
+    Returns
+    -------
+    xarray.Dataset
+        A result of independent rows, which every reader of results takes.
+
+    Raises
+    ------
+    InputError
+        In one line: file, line, column, value, what is allowed.
+    """
+    columns = RecordColumns(life, unit, censored, low, high, entered, cause)
+    return read_lives(path, columns, thresholds)[0]
 
 
 def _read(path: Path) -> _RecordTable:
@@ -220,7 +279,7 @@ def _unit(table: _RecordTable, columns: RecordColumns) -> tuple[str, float]:
     if columns.unit:
         stated = {"--unit": columns.unit} | stated
     for who, unit in stated.items():
-        if fault := fault_of_unit(unit):
+        if not _both_times(unit) and (fault := fault_of_unit(unit)):
             raise InputError(f"{table.path}: {who}: unit '{unit}': {fault}")
     (first, unit), *others = list(stated.items()) or [("", "1")]
     for other, another in others:
@@ -233,14 +292,20 @@ def _unit(table: _RecordTable, columns: RecordColumns) -> tuple[str, float]:
                 f"{table.path}: two units of time: {first} is in '{unit}', {other} in '{another}';"
                 " convert one of them"
             )
-    if unit == "1":
-        return unit, 1.0
-    quantity = read_quantity(f"1 {unit}")
-    return ("s", float(quantity)) if quantity.dimensions == {"s": 1} else (unit, 1.0)
+    return ("s", float(read_quantity(f"1 {unit}"))) if _both_times(unit) else (unit, 1.0)
+
+
+def _misfit(text: str, name: str, unit: str) -> str:
+    try:
+        return misfit(text, name, unit)
+    except ValueError as error:
+        return str(error)
 
 
 def _both_times(*units: str) -> bool:
-    return all(unit != "1" and read_quantity(f"1 {unit}").dimensions == {"s": 1} for unit in units)
+    with suppress(ValueError):
+        return all(read_quantity(f"1 {unit}").dimensions == {"s": 1} for unit in units)
+    return False
 
 
 def _lives(table: _RecordTable, columns: RecordColumns) -> dict[str, Any]:
@@ -325,7 +390,9 @@ def _identifier(name: str) -> str:
     return word if word.isidentifier() else f"column_{word}"
 
 
-def _inputs(table: _RecordTable, used: Sequence[str], life: str) -> tuple[dict[str, Floats], list[str]]:
+def _inputs(
+    table: _RecordTable, used: Sequence[str], life: str
+) -> tuple[dict[str, Floats], list[str]]:
     """Return the columns of numbers that say nothing of the life, and notes on the others."""
     inputs, notes = dict[str, Floats](), list[str]()
     taken = {"row", "replicate", "group", "block", "status", "world", "unit", "repeat", "rerun"}
@@ -370,9 +437,11 @@ def _record_model(name: str, output: Output, inputs: Mapping[str, Floats]) -> Mo
     )
 
 
-def _as_result(ds: xr.Dataset, path: Path, inputs: Mapping[str, Floats], n: int) -> xr.Dataset:
+def _as_result(
+    ds: xr.Dataset, path: Path, inputs: Mapping[str, Floats], asked: Mapping[str, Any]
+) -> xr.Dataset:
     """Return rows with the attributes and design indices of a result."""
-    uncertain = {}
+    uncertain, n = {}, ds.sizes["row"]
     for name, values in inputs.items():
         if len(set(values.tolist())) < 2:
             attrs = ds[name].attrs | {"role": "fixed", "nominal": float(values[0])}
@@ -391,7 +460,9 @@ def _as_result(ds: xr.Dataset, path: Path, inputs: Mapping[str, Floats], n: int)
             "design": {"method": "imported", "independent": True},
             "uncertain": uncertain,
         }
+        | ({"analysis": asked} if asked else {})
     )
+    study_of_result(study)  # refuses thresholds that are no times
     along = ("row",)
     block = {"flag_values": np.int16(0), "flag_meanings": "sample"}
     zeros = np.zeros(n, np.int64)

@@ -134,6 +134,19 @@ class Result:
         """Whether the rows are lives from the field, which no model computed."""
         return self.dataset.attrs["model"] == FIELD_RECORD
 
+    def refuse_if_record(self, question: str) -> None:
+        """Refuse a question that lives from the field cannot answer, as no model computed them.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.is_field_record:
+            raise InputError(
+                f"{question}: {self.file} has lives from the field, which no model computed; ask it"
+                " of a simulated study"
+            )
+
     @property
     def is_random(self) -> bool:
         """Whether rows of the model depend on their seeds."""

@@ -178,6 +178,7 @@ def import_(
     cause: Annotated[
         str, typer.Option(metavar="COLUMN", help="Event that ended the life; empty: none.")
     ] = "",
+    threshold: given.Times = None,
     quiet: given.Quiet = False,
 ) -> None:
     """Read lives from the field into a result; other columns of numbers become inputs."""
@@ -187,10 +188,17 @@ def import_(
 
     check_target(output, 0)
     columns = RecordColumns(life, unit, censored, low, high, entered, cause)
-    record, notes = read_lives(data, columns)
+    record, notes = read_lives(data, columns, [_number_or_text(at) for at in threshold or ()])
     write_result(record, output)
     if not quiet:
         summary_tables.show_card(output, notes)
+
+
+def _number_or_text(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def export(
