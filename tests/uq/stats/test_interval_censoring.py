@@ -43,7 +43,7 @@ def drawn(rng, kind, n=80):
 def test_the_estimate_is_the_published_one_of_lives_after_radiotherapy():
     estimate = turnbull(intervals(RADIATION))
     kept = estimate.mass > 1e-4
-    found = list(zip(estimate.low[kept], estimate.high[kept], estimate.mass[kept], strict=True))
+    points = list(zip(estimate.low[kept], estimate.high[kept], estimate.mass[kept], strict=True))
     published = [  # M. P. Fay, P. A. Shaw, J. Stat. Softw. 36(2) (2010), section 3
         (4, 5, 0.0463),
         (6, 7, 0.0334),
@@ -54,8 +54,8 @@ def test_the_estimate_is_the_published_one_of_lives_after_radiotherapy():
         (38, 40, 0.1209),
         (46, 48, 0.4656),
     ]
-    assert [entry[:2] for entry in found] == [entry[:2] for entry in published]
-    assert [round(float(mass), 4) for *_, mass in found] == [mass for *_, mass in published]
+    assert [entry[:2] for entry in points] == [entry[:2] for entry in published]
+    assert [round(float(mass), 4) for *_, mass in points] == [mass for *_, mass in published]
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -27,7 +27,7 @@ from uq.stats.survival_curves import aalen_johansen, incidence_interval
 from uq.text.units import unit_of
 
 _PAPERS = ("weibull", "lognormal", "exponential")
-_TICKS = (0.001, 0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 0.95, 0.99, 0.999)
+_TICKS = (0.001, 0.01, 0.05, 0.2, 0.5, 0.9, 0.999)
 
 
 @styled
