@@ -149,7 +149,6 @@ def test_the_platform_depends_one_way():
 GIVEN_BY_USERS = {
     "uq.explore.basins",
     "uq.explore.single_rows",
-    "uq.execution.single_row",
     "uq.execution.child",
     "uq.execution.loading",
     "uq.study.definition",

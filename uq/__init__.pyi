@@ -29,10 +29,12 @@ from .learning.next_inspection import worth as worth
 from .learning.posterior_result import as_unit as as_unit
 from .machines.function import machine as machine
 from .machines.returned import Returned as Returned
+from .machines.returned import between as between
 from .machines.returned import censored as censored
 from .render.card import card as card
 from .render.trace.trace import trace as trace
 from .result.elements import labels as labels
+from .result.life_record import import_lives as import_lives
 from .result.result_file import open_result as open_result
 from .study.definition import Study as Study
 from .study.provenance import __version__ as __version__

@@ -120,6 +120,13 @@ class Output:
     never_known_at_once : bool
         For lifetimes only: whether a life that never ends is recognised before any row is
         censored, so that every censored row would end later.
+    causes : tuple of str
+        For lifetimes only: the events that may end it. The model then has the category
+        ``<name>_cause``, the cause that ended the life of each row: -1 if it has not ended.
+    may_be_between : bool
+        For lifetimes only: ``batch`` also returns ``<name>_high``, the upper bound of a life known
+        to end between two times; +inf or the life itself for all others. The value is then the
+        lower bound, and ``<name>_censored`` is true.
     shown : bool
         Whether tables that name no outputs show it; if not, it is for `Model.again`.
     scales : dict of str to float, or callable
@@ -142,6 +149,8 @@ class Output:
     success: str = ""
     never_known_at_once: bool = True
     shown: bool = True
+    causes: tuple[str, ...] = ()
+    may_be_between: bool = False
     scales: Mapping[str, float] | Scales = field(default_factory=dict, hash=False)
 
     @property
@@ -205,6 +214,21 @@ class Output:
 def censored_name(output: str) -> str:
     """Return the name of the censoring flag of a lifetime."""
     return f"{output}_censored"
+
+
+def high_name(output: str) -> str:
+    """Return the name of the upper bounds of a lifetime that may be known within an interval."""
+    return f"{output}_high"
+
+
+def entered_name(output: str) -> str:
+    """Return the name of the times from which rows were under observation (late entry)."""
+    return f"{output}_entered"
+
+
+def cause_name(output: str) -> str:
+    """Return the name of the category with the cause that ended a lifetime."""
+    return f"{output}_cause"
 
 
 class Status(IntEnum):
@@ -402,6 +426,23 @@ class Model:
     headline: tuple[str, ...] = ()
     row_name: tuple[str, str] = ROW_NAME
     uncertain: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Add the category ``<name>_cause`` of each lifetime with causes."""
+        outputs = dict(self.outputs)
+        for name, output in self.outputs.items():
+            if output.causes:
+                outputs[cause_name(name)] = Output(
+                    "1",
+                    f"cause of the end of {name}",
+                    "category",
+                    output.dims,
+                    may_be_undefined=True,
+                    categories=output.causes,
+                    shown=output.shown,
+                )
+        if len(outputs) > len(self.outputs):
+            object.__setattr__(self, "outputs", outputs)
 
     def alone(self, output: str) -> "Model":
         """Return a model that computes only one of the `cheap` outputs."""

@@ -32,6 +32,9 @@ from uq.render.figures.figure import FORMATS, drawn_at, write
 from uq.render.figures.index_plot import index_bars as index_bars
 from uq.render.figures.index_plot import index_curves as index_curves
 from uq.render.figures.input_plot import inputs as inputs
+from uq.render.figures.life_plots import compared_lives as compared_lives
+from uq.render.figures.life_plots import incidence as incidence
+from uq.render.figures.life_plots import probability_paper as probability_paper
 from uq.render.figures.motion_plot import history as history
 from uq.render.figures.motion_plot import motion as motion
 from uq.render.figures.motion_plot import phase_portrait as phase_portrait
@@ -52,6 +55,21 @@ from uq.result.result import Result
 FIGURES: dict[str, Entry] = {
     "lifetime": Entry(
         lifetime, subjects.outputs, applies=(subjects.is_lifetime,), needs=("summary",)
+    ),
+    "incidence": Entry(
+        incidence,
+        subjects.outputs,
+        "Cumulative incidence by cause: {what}",
+        applies=(subjects.has_causes,),
+        leading=subjects.the_first,
+    ),
+    "paper": Entry(
+        probability_paper,
+        subjects.outputs,
+        "Weibull paper: {what}",
+        section="",
+        applies=(subjects.has_weibull_law,),
+        on_request=True,
     ),
     "histogram": Entry(
         histogram,

@@ -97,6 +97,31 @@ starts = {
 found = uq.basins("mole", starts, fixed={"control_frequency": 8.0}, by=["progression_rate"])
 uq.plots.basins(found, ["progression_rate"])"""
 
+RECORD = """\
+import numpy as np
+
+import uq
+
+rng = np.random.default_rng(1)  # in place of a record: 200 screens that tear or wear
+torn, worn = rng.exponential(3000, 200), 2000 * rng.weibull(2, 200)
+end = rng.uniform(500, 3000, 200)
+life = np.minimum(np.minimum(torn, worn), end)
+cause = np.select([life == end, torn < worn], ["", "torn"], "worn")
+table = np.column_stack([life, life == end, cause])
+head = "life [h],running,cause"
+np.savetxt("screens.csv", table, "%s", ",", header=head, comments="")
+ds = uq.import_lives("screens.csv", "life", censored="running", cause="cause")
+"""
+
+BESIDE = """\
+from uq.assess.comparison import comparison
+from uq.result.result import Result
+
+others = np.column_stack([1.3 * life, life == end])
+np.savetxt("others.csv", others, "%s", ",", header="life [h],running", comments="")
+second = uq.import_lives("others.csv", "life", censored="running")
+uq.plots.compared_lives(comparison(Result(ds), Result(second)))"""
+
 EXAMPLES = (
     _of_result(
         "lifetime",
@@ -116,6 +141,32 @@ EXAMPLES = (
         " all rows.",
         f'event_probability(ds, "P({LIFE}<86400.0)")',
         "beam-lifetime",
+    ),
+    Example(
+        "incidence",
+        LIVES,
+        "Which cause ends a life, and when",
+        "The probability that each cause has ended the life, stacked: the upper edge is the"
+        " probability that the life has ended. Bands are pointwise 95 % intervals.",
+        RECORD + 'uq.plots.incidence(ds, "life")',
+        "uq plot screens.nc --only incidence",
+    ),
+    Example(
+        "paper",
+        LIVES,
+        "A lifetime on probability paper",
+        "Where the fitted law is a straight line: points are the rows, with pointwise 95 %"
+        " intervals.",
+        RECORD + 'uq.plots.probability_paper(ds, "life", law="weibull")',
+        "uq plot screens.nc --only paper",
+    ),
+    Example(
+        "compared-lives",
+        LIVES,
+        "Lives from the field beside others",
+        "Both survival curves with their pointwise 95 % intervals, and their difference below.",
+        RECORD + BESIDE,
+        "uq compare screens.nc results/exponential-wear.nc --plot both.png",
     ),
     _of_result(
         "histogram",

@@ -10,7 +10,7 @@ from uq.indices.methods import METHODS, designs_for, fed_by, for_dependent_input
 from uq.plots import FIGURES
 from uq.sampling.designs import DESIGNS, PLAIN, Design
 from uq.sampling.laws import LAWS
-from uq.sampling.wear_coefficients import PAIRS
+from uq.sampling.scipy_laws import PAIRS
 from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyTable, Tied, Until
 
 from .markdown import table, value

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import stats
 
 from uq.sampling.listed_values import Steps
-from uq.sampling.wear_coefficients import PAIRS
+from uq.sampling.scipy_laws import PAIRS
 
 
 def _lognormal(law):

@@ -15,6 +15,7 @@ Reading order; each part imports only those above it:
     sampled_laws           stated laws and rank correlations of the inputs compared with those
     scale_laws             law of the life of a row given the inputs that are not integrated
     counted_rows           sample of rows of equal weight
+    observed_lives         sample of lives known within intervals, or of rows that entered late
     pairing                pair the rows of two results, and correlate their estimates
     targets                targets of sensitivity indices
     integrated_inputs      choose the inputs to integrate exactly, which only scale lives
@@ -32,7 +33,7 @@ Reading order; each part imports only those above it:
     statistics             the statistics of an output: ``table`` lists them
     survival               survival curve of a life
     components_by_level    variance components of outputs
-    life_fit               Weibull and lognormal laws fitted to lifetimes
+    life_fit               laws fitted to lifetimes
     two_fidelities         estimate from the rows of a result and many more rows of a cheap
     summary                summary of a result
     comparison             compare two studies of one model

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import chain
 from math import isnan
 
+import numpy as np
 import pandas as pd
 
 from uq.assess.input_changes import ChangedEntry, OnlyChange, changes, only_change
@@ -13,8 +14,9 @@ from uq.assess.pairing import Pair
 from uq.assess.sample import SelectedRows, in_categories, value_and_censoring
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.summary import REGIME, Shares, Summary, summarise
-from uq.contract import Output
-from uq.errors import InputError
+from uq.assess.weighted_mixture import as_sample
+from uq.contract import Floats, Output
+from uq.errors import InputError, choices
 from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.stats import two_samples
@@ -173,6 +175,8 @@ class Comparison:
         Category, such as the regime -> label -> `ComparedStatistic`.
     outputs : dict of str to ComparedOutput
     notes : list of str
+    curves : dict of str to SurvivalCurves
+        Of each lifetime, where one result has lives from the field.
     """
 
     first: Side
@@ -183,15 +187,30 @@ class Comparison:
     shares: Mapping[str, Mapping[str, ComparedStatistic]]
     outputs: Mapping[str, ComparedOutput]
     notes: list[str]
+    curves: Mapping[str, "SurvivalCurves"]
 
 
-def compare(first: AnyResult, second: AnyResult) -> pd.DataFrame:
+@dataclass(frozen=True)
+class SurvivalCurves:
+    """Survival probabilities of one lifetime in two results, and their differences, at times."""
+
+    time: Floats
+    first: tuple[Estimate, ...]
+    second: tuple[Estimate, ...]
+    differences: tuple[Estimate, ...]
+
+
+def compare(first: AnyResult, second: AnyResult, output: str | None = None) -> pd.DataFrame:
     """Compare the outputs of two studies of one model.
 
     Parameters
     ----------
     first, second : Result, xarray.Dataset or path
         Results.
+    output : str, optional
+        Where one result has lives from the field: the lifetime of the other to compare them with,
+        such as ``first_time_to_depth[depth=0.00025]``; by default the one of the same name, or the
+        only one.
 
     Returns
     -------
@@ -208,14 +227,14 @@ def compare(first: AnyResult, second: AnyResult) -> pd.DataFrame:
     """
     first = Result.of(first)
     second = Result.of(second)
-    compared = comparison(first, second)
+    compared = comparison(first, second, output)
     pairs = {
         (name, label): statistic
         for name, statistics in compared.shares.items()
         for label, statistic in statistics.items()
     }
-    for name, output in compared.outputs.items():
-        pairs |= {(name, statistic.first.label): statistic for statistic in output.statistics}
+    for name, of_output in compared.outputs.items():
+        pairs |= {(name, statistic.first.label): statistic for statistic in of_output.statistics}
     lines = [
         [
             *(side.estimate.finite.value for side in (statistic.first, statistic.second)),
@@ -228,8 +247,15 @@ def compare(first: AnyResult, second: AnyResult) -> pd.DataFrame:
     return pd.DataFrame(lines, index, columns, dtype=float)
 
 
-def comparison(first: Result, second: Result) -> Comparison:
+def comparison(first: Result, second: Result, output: str | None = None) -> Comparison:
     """Return the differences of `compare` and the changes of the study."""
+    is_record = first.is_field_record, second.is_field_record
+    if is_record == (True, False):
+        first = _named_as(first, second, output)
+    elif is_record == (False, True):
+        second = _named_as(second, first, output)
+    elif output is not None:
+        raise InputError("--output: only where one result has lives from the field; leave it out")
     _refuse(first, second)
     results = (first, second)
     analyses = [result.analysis for result in results]
@@ -241,12 +267,14 @@ def comparison(first: Result, second: Result) -> Comparison:
         {element.name: element for element in elements_with_laws(rows, outputs)}
         for rows in pair.rows
     ]
-    changed = changes(*results)
+    changed = [] if any(is_record) else changes(*results)
+    only = None if any(is_record) else only_change(first, second, changed)
+    lives = [name for name, element in elements[0].items() if element.is_lifetime]
     return Comparison(
         first=Side(str(first.dataset.attrs["title"]), summaries[0]),
         second=Side(str(second.dataset.attrs["title"]), summaries[1]),
         changed=changed,
-        only=only_change(first, second, changed),
+        only=only,
         pairing=pair.pairing.name.lower().partition("_")[0],
         shares=compared_shares(pair, summaries),
         outputs={
@@ -255,12 +283,88 @@ def comparison(first: Result, second: Result) -> Comparison:
             if name in elements[1]
         },
         notes=list(_notes(pair, summaries, elements)),
+        curves={
+            name: _curves(pair, [by_name[name] for by_name in elements])
+            for name in lives
+            if any(is_record) and name in elements[1]
+        },
     )
+
+
+def _curves(pair: Pair, elements: list[Element]) -> SurvivalCurves:
+    """Return both survival curves at the times of either, up to the last time of both."""
+    samples = [
+        as_sample(element, rows.dependence)
+        for element, rows in zip(elements, pair.rows, strict=True)
+    ]
+    times = [sample.times for sample in samples]
+    every = np.unique(np.concatenate(times))
+    last = min((of_one.max() for of_one in times if len(of_one)), default=0.0)
+    every = every[(every > 0) & (every <= last)]
+    if len(every) > _MOST_TIMES:
+        every = every[np.linspace(0, len(every) - 1, _MOST_TIMES).round().astype(int)]
+    both = [
+        tuple(
+            Estimate(float(value), float(low), float(high))
+            for value, low, high in zip(*sample.survival(every), strict=True)
+        )
+        for sample in samples
+    ]
+    apart = tuple(
+        two_samples.difference(first, second, pair.unpaired)
+        for first, second in zip(*both, strict=True)
+    )
+    return SurvivalCurves(every, both[0], both[1], apart)
+
+
+def _named_as(record: Result, other: Result, output: str | None) -> Result:
+    """Return lives from the field under the name and place of a lifetime of a simulated study."""
+    (mine,) = [name for name, declared in record.outputs.items() if declared.is_lifetime]
+    shown = other.shown_outputs(other.analysis)
+    names = [e.name for e in other.elements(shown) if e.is_lifetime]
+    if output is None and mine in names:
+        output = mine
+    elif output is None and len(names) == 1:
+        output = names[0]
+    elif output is None:
+        raise InputError(
+            f"which lifetime are the lives '{mine}' to be compared with? Add --output NAME"
+            f" (allowed: {choices(names)})"
+        )
+    (element, *others) = other.lifetimes(output)
+    if others:
+        raise InputError(f"--output {output}: name one element, such as '{element.name}'")
+    unit = record.outputs[mine].unit
+    if unit != element.units:
+        raise InputError(
+            f"the lives '{mine}' are in '{unit}', '{element.name}' in '{element.units}';"
+            " import them again with --unit"
+        )
+    ds = record.dataset
+    companions = {name: name.replace(mine, element.output, 1) for name in map(str, ds.data_vars)}
+    renamed = {
+        name: new
+        for name, new in companions.items()
+        if name == mine or (name.startswith(f"{mine}_") and ds[name].attrs.get("role") != "input")
+    }
+    taken = [name for name in renamed.values() if name in ds and name not in renamed]
+    ds = ds.drop_vars(taken).rename(renamed)
+    for name in renamed.values():
+        for i, (dim, label) in enumerate(element.place.items()):
+            ds[name] = ds[name].expand_dims({dim: [label]}, axis=i + 1)
+    declared = other.dataset[element.output].attrs
+    for key in ("long_name", "success"):
+        if key in declared:
+            ds[element.output].attrs[key] = declared[key]
+    return Result(ds)
+
+
+_MOST_TIMES = 40  # of compared survival curves
 
 
 def _refuse(first: Result, second: Result) -> None:
     names = [result.dataset.attrs["model"] for result in (first, second)]
-    if names[0] != names[1]:
+    if names[0] != names[1] and not (first.is_field_record or second.is_field_record):
         raise InputError(
             f"the first is of model '{names[0]}', the second of '{names[1]}': only studies of the"
             " same model can be compared"

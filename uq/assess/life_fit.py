@@ -1,6 +1,6 @@
-"""Weibull and lognormal laws fitted to lifetimes, and refused where they do not fit."""
+"""Laws fitted to lifetimes by maximum likelihood, and refused where they do not fit."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import nan
@@ -9,12 +9,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from uq.assess.observed_lives import ObservedLives
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.stats.estimate import Estimate
+from uq.stats.interval_censoring import LifeIntervals
 from uq.stats.intervals import CONFIDENCE, upper_probability
+from uq.stats.life_likelihood import LAWS, NoMaximumError, fit_law
 from uq.stats.location_scale import FAMILIES, Family, anderson_darling, fit
 from uq.stats.order_statistics import is_within
 from uq.text.numbers import counted
@@ -68,6 +71,8 @@ class Fit:
         B-lives earlier than the rows reach, 1/(n + 1).
     assumes : str
         Assumption behind all of these.
+    log_likelihood : float
+        At its maximum; NaN of a law whose fit was tested instead.
     """
 
     rows: int
@@ -77,16 +82,65 @@ class Fit:
     b_lives: Mapping[str, Estimate] = field(default_factory=dict)
     extrapolated: frozenset[str] = frozenset()
     assumes: str = ""
+    log_likelihood: float = nan
+
+    @property
+    def aic(self) -> float:
+        """Akaike's information criterion: the smaller, the better."""
+        return 2 * len(self.parameters) - 2 * self.log_likelihood
 
 
-def fits_of(element: Element, independent: bool) -> dict[str, Fit]:
+def fits_of(
+    element: Element,
+    independent: bool,
+    of_record: bool = False,
+    laws: Collection[str] = tuple(LAWS),
+) -> dict[str, Fit]:
     """Fit every law to one element of a lifetime; name of the law -> `Fit`.
+
+    Weibull and lognormal laws of plain rows are tested. All laws of lives from the field (however
+    few), of lives known within intervals and of rows that entered late, and the other laws in any
+    case, are by maximum likelihood (`uq.stats.life_likelihood.fit_law`), without a test.
 
     References
     ----------
     J. F. Lawless, "Statistical models and methods for lifetime data", 2nd ed., Wiley (2003), 5.
     """
-    return {law: _fit(law, element, independent) for law in FAMILIES}
+    by_likelihood = of_record or element.has_intervals_or_entries
+    tested = () if by_likelihood else [law for law in FAMILIES if law in laws]
+    fits = {law: _fit(law, element, independent) for law in tested}
+    least = 0 if by_likelihood else MIN_ENDED
+    others = {
+        law: _fit_by_likelihood(law, element, independent, least) for law in laws if law not in fits
+    }
+    return fits | others
+
+
+LIKELIHOOD_ASSUMES = (
+    "that lives follow this law, which is not tested: compare aic, and the law with the rows on"
+    " probability paper"
+)
+
+
+def _fit_by_likelihood(law: str, element: Element, independent: bool, least: int) -> Fit:
+    sample = ObservedLives(element)
+    lives = LifeIntervals(*(column[:MAX_ROWS] for column in sample.lives))
+    rows, life = len(lives), element.at_least[:MAX_ROWS]
+    ended = (~element.censored | element.within_interval)[element.present][:MAX_ROWS]
+    if problem := _problem(life, ended, independent, least, law == "exponential"):
+        return Fit(rows, refused=problem)
+    try:
+        fitted = fit_law(law, lives, B_LIVES)
+    except NoMaximumError as refusal:
+        return Fit(rows, refused=str(refusal))
+    return Fit(
+        rows,
+        parameters=fitted.parameters,
+        b_lives=fitted.quantiles,
+        extrapolated=frozenset(name for name, p in B_LIVES.items() if not is_within(p, rows)),
+        assumes=LIKELIHOOD_ASSUMES,
+        log_likelihood=fitted.log_likelihood,
+    )
 
 
 _Lives = tuple[Floats, Mask]
@@ -133,7 +187,13 @@ def _fit(law: str, element: Element, independent: bool) -> Fit:
     )
 
 
-def _problem(life: Floats, ended: Mask, independent: bool) -> str:
+def _problem(
+    life: Floats,
+    ended: Mask,
+    independent: bool,
+    least: int = MIN_ENDED,
+    may_be_zero: bool = False,
+) -> str:
     """Return why no law can be fitted, or ""."""
     if not independent:
         return INDEPENDENT_ONLY
@@ -141,11 +201,11 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
     if never:
         endless = counted(never, "never ends", "never end")
         return f"of {len(life)} rows {endless}, which this law excludes"
-    if none := int((life <= 0).sum()):
+    if none := int(((life <= 0) & ended).sum()) if least and not may_be_zero else 0:
         return f"{counted(none, 'row has', 'rows have')} no positive life, which this law excludes"
-    if ended.sum() < MIN_ENDED:
+    if ended.sum() < least:
         return f"only {counted(int(ended.sum()), 'row')} ended; {MIN_ENDED} are needed"
-    if len(np.unique(life[ended])) < MIN_ENDED:
+    if len(np.unique(life[ended])) < least:
         return f"the rows that ended share fewer than {MIN_ENDED} values"
     return ""
 
@@ -205,8 +265,8 @@ def _exponential(value: float, draws: Floats) -> Estimate:
     return Estimate(value, low, high)
 
 
-_PARAMETERS = ("shape", "scale", "median", "sigma")
-_FACTS = ("rows", "p_value", "refused", "assumes")
+_PARAMETERS = tuple(dict.fromkeys(name for law in LAWS.values() for name in law.names))
+_FACTS = ("rows", "p_value", "log_likelihood", "refused", "assumes")
 _ENDS = ("", "_low", "_high")
 _COLUMNS = [
     *_FACTS,
@@ -216,7 +276,7 @@ _COLUMNS = [
 
 
 def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
-    """Fit Weibull and lognormal laws to a lifetime.
+    """Fit laws to a lifetime by maximum likelihood.
 
     Parameters
     ----------
@@ -228,11 +288,13 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        Index: ``output`` (its element) and ``law`` (``weibull``, ``lognormal``). Columns: ``rows``
-        used; ``p_value`` of the Anderson-Darling test, its distribution from refits; ``refused``,
-        why the law does not apply, or ""; ``assumes``, what its numbers rest on. Where it is not
-        refused: its parameters, named as in study files (``shape`` and ``scale`` [s]; ``median``
-        [s] and ``sigma``), and ``B1``, ``B10``, ``B50`` [s], each with ``_low`` and ``_high`` for
+        Index: ``output`` (its element) and ``law`` (``weibull``, ``lognormal``, ``gamma``,
+        ``exponential``, ``weibull-3`` with a threshold, ``weibull-mixture`` of two populations).
+        Columns: ``rows`` used; ``p_value`` of the Anderson-Darling test, its distribution from
+        refits, or the ``log_likelihood`` of a law that is not tested; ``refused``, why the law does
+        not apply, or ""; ``assumes``, what its numbers rest on. Where it is not refused: its
+        parameters, named as in study files (``shape`` and ``scale`` [s]; ``median`` [s] and
+        ``sigma``), and ``B1``, ``B10``, ``B50`` [s], each with ``_low`` and ``_high`` for
         the 95 % interval; ``B1_extrapolated`` and so on: whether that life is earlier than the rows
         reach, 1/(n + 1). NaN where there is no number.
 
@@ -243,8 +305,9 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
 
     Notes
     -----
-    Intervals are exact for complete samples, whose pivots do not depend on the parameters [1]_,
-    and those of the parametric bootstrap for censored ones, with censoring times drawn from their
+    Intervals of laws that are not tested are by profile likelihood. Those of the others are exact
+    for complete samples, whose pivots do not depend on the parameters [1]_, and those of the
+    parametric bootstrap for censored ones, with censoring times drawn from their
     own Kaplan-Meier estimate, which assumes that censoring is non-informative.
 
     References
@@ -267,7 +330,7 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     lines = {
         (element.name, law): _line(fit)
         for element in rows.lifetimes(output)
-        for law, fit in fits_of(element, independent).items()
+        for law, fit in fits_of(element, independent, result.is_field_record).items()
     }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "law"])
     return pd.DataFrame(list(lines.values()), index=index, columns=_COLUMNS)

@@ -32,6 +32,7 @@ WORST = -1.0
 class Pairing(Enum):
     """Relation between the rows of two results; the value is the sentence that reports it."""
 
+    RECORD = "The lives from the field are independent of the other rows."
     INDEPENDENT = "The seeds differ: the two samples are independent."
     ROWS = "The studies share a seed: rows with the same number are paired."
     ROWS_SAME = "Both results have the same rows."
@@ -62,6 +63,8 @@ def pairing(first: Result, second: Result) -> Pairing:
     both = (first, second)
     if any(result.has_weights for result in both):
         return Pairing.WEIGHTED
+    if any(result.is_field_record for result in both):
+        return Pairing.ROWS_SAME if _same_rows(first, second) else Pairing.RECORD
     if any(result.design.imported for result in both):
         return _pairing_of_imported(first, second)
     if first.dataset.attrs["seed"] != second.dataset.attrs["seed"]:
@@ -285,7 +288,7 @@ class Pair:
     @property
     def unpaired(self) -> float:
         """The correlation to assume where rows are not paired."""
-        return 0.0 if self.pairing is Pairing.INDEPENDENT else WORST
+        return 0.0 if self.pairing in (Pairing.INDEPENDENT, Pairing.RECORD) else WORST
 
     def _correlation(self, estimator: Estimator, samples: list[SelectedRows]) -> float:
         """Return the correlation of influences of paired rows, or of means in paired replicates.

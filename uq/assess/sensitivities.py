@@ -232,6 +232,10 @@ def indices_of_target(
     try:
         if target.refused:
             raise RefusedError(target.refused)
+        if target.element is not None and target.element.entered is not None:
+            raise RefusedError(
+                "rows that entered late do not represent the lives that ended before"
+            )
         if method.of_variance and not target.event and lacks_variance(target.sizes):
             raise RefusedError(_no_variance(target))
         asked = _conditioned(target, sample) if method.conditional else sample

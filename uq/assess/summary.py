@@ -241,8 +241,9 @@ def _described(
                 else statistic
                 for statistic in statistics
             )
-    independent = context.sample(element).is_simple_random
-    fitted = fits_of(element, independent) if fits and element.is_lifetime else {}
+    fitted = {}
+    if fits and element.is_lifetime:
+        fitted = fits_of(element, context.rows.dependence.is_none, context.rows.is_field_record)
     return Described(element.units, parts, fitted)
 
 

@@ -214,6 +214,8 @@ def _fit(fit: Fit) -> dict[str, Any]:
     entry["parameters"] = {
         name: estimate_json.numbers(estimate) for name, estimate in fit.parameters.items()
     }
+    if isfinite(fit.log_likelihood):
+        entry |= {"log_likelihood": fit.log_likelihood, "aic": fit.aic}
     entry["assumes"] = fit.assumes
     for name, estimate in fit.b_lives.items():
         entry[name] = estimate_json.numbers(estimate) | {"extrapolated": name in fit.extrapolated}
@@ -235,6 +237,8 @@ def comparison_facts(comparison: "Comparison") -> Fact:
         ``high`` of b less a, with ``identical`` where the rows are paired and agree: then there is
         no interval. ``no_row_changes_sides``: where they differ, but none is a hit in one result
         alone; the ends are the largest share that may change sides. A scale also has ``ratio``.
+        ``curves``, with lives from the field: survival probabilities of a and b at each ``time``,
+        and their ``difference`` with its interval.
         ``notes``: sentences.
     """
     shares = {
@@ -255,8 +259,22 @@ def comparison_facts(comparison: "Comparison") -> Fact:
             "categories": shares,
             "outputs": {name: _output(output) for name, output in comparison.outputs.items()},
             "notes": comparison.notes,
-        },
+        }
+        | ({"curves": _curves(comparison)} if comparison.curves else {}),
     )
+
+
+def _curves(comparison: "Comparison") -> dict[str, Any]:
+    """Return survival probabilities of both results and their differences at each time."""
+    return {
+        name: {
+            "time": curves.time.tolist(),
+            "a": [estimate_json.numbers(estimate) for estimate in curves.first],
+            "b": [estimate_json.numbers(estimate) for estimate in curves.second],
+            "difference": [estimate_json.numbers(estimate) for estimate in curves.differences],
+        }
+        for name, curves in comparison.curves.items()
+    }
 
 
 def _about(side: "Side") -> dict[str, Any]:

@@ -98,10 +98,13 @@ BAND = (
     " all times, exact without censored rows"
 )
 NO_BAND = "none: a simultaneous band needs independent rows"
+NO_INSPECTED_BAND = "none: lives are known within intervals, or rows entered late"
 NO_WEIGHTED_BAND = "none: a simultaneous band needs rows of equal weight"
 
 
 def _why_no_band(sample: Sample) -> str:
+    if sample.element.has_intervals_or_entries:
+        return NO_INSPECTED_BAND
     if sample.is_simple_random:
         return ""
     return NO_BAND if sample.effective_rows is None else NO_WEIGHTED_BAND
@@ -159,7 +162,7 @@ def _band(sample: Sample, time: Floats) -> Ends:
     """Return the simultaneous 95 % band of lives as computed; NaN without one."""
     element = sample.element
     values, censored = element.at_least, element.censored[element.present]
-    if len(values) == 0 or not sample.is_simple_random:
+    if len(values) == 0 or _why_no_band(sample):
         return np.full(len(time), np.nan), np.full(len(time), np.nan)
     known_at_once = element.declared.never_known_at_once
     return simultaneous_band(values, censored, time, known_at_once=known_at_once)

@@ -9,6 +9,7 @@ import numpy as np
 
 from uq.assess.counted_rows import CountedRows
 from uq.assess.fact import Functions
+from uq.assess.observed_lives import ObservedLives
 from uq.assess.sample import (
     Curve,
     Estimator,
@@ -358,6 +359,7 @@ def as_sample(
     """Return the rows of an element as a sample, by the strategy that suits them.
 
     `CountedRows` where all rows are of equal weight and have the lives that were computed;
+    `ObservedLives` where lives are known within intervals or rows entered late;
     `WeightedMixture` where rows have weights, or an input of a life is integrated exactly.
 
     Parameters
@@ -369,7 +371,9 @@ def as_sample(
     weights : ImportanceWeights, optional
         Of the rows with lives as computed.
     """
-    strategy = CountedRows if element.is_plain else WeightedMixture
+    strategy: type[Sample] = CountedRows if element.is_plain else WeightedMixture
+    if strategy is CountedRows and element.is_lifetime and element.has_intervals_or_entries:
+        strategy = ObservedLives
     return strategy(element, dependence, confidence, weights)
 
 

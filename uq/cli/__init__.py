@@ -11,12 +11,10 @@ Reading order; each part imports only those above it:
     streams         standard streams that are closed, full or lack characters
     compare         the output of ``uq compare``
     estimates       terminal output of ``uq twin``, ``uq convergence`` and ``uq fleet``
-    guide           output of ``uq`` without a command: next steps
-    models          terminal output of ``uq models``
-    sensitivity     terminal output of ``uq sensitivity`` and ``uq levels``
+    models          terminal output of ``uq models``, and of ``uq`` without a command: next steps
+    sensitivity     terminal output of ``uq sensitivity``, ``uq levels`` and ``uq trace``
     summary_tables  card, answer and summary of a result, 80 columns wide
     what_if         terminal output of ``uq what-if``
-    trace           terminal output of ``uq trace``
     check           terminal output of ``uq check`` and ``uq plan``, before a run
     rare_event      terminal output of ``uq rare-event``
     simulate        the command ``uq simulate``

@@ -13,6 +13,7 @@ GROUPS: dict[str, dict[Callable[..., Any], str]] = {
         studies.models: "uq models exponential-wear",
         studies.init: "uq init exponential-wear > mine.toml",
         studies.simulate: "uq simulate exponential-wear --set rate=3e-10",
+        results.import_: "uq import rods.csv -o results/rods.nc --life hours --unit h",
         studies.schema: "uq schema > vibrolife-study.schema.json",
         studies.serve: "uq serve exponential-wear --port 4242",
     },
@@ -81,7 +82,8 @@ app = typer.Typer(
 )
 for heading, group in GROUPS.items():
     for verb, example in group.items():
-        app.command(rich_help_panel=heading, epilog=f"\b\nExample:\n  {example}")(verb)
+        name = verb.__name__.rstrip("_").replace("_", "-")
+        app.command(name, rich_help_panel=heading, epilog=f"\b\nExample:\n  {example}")(verb)
 
 
 def _show_version(wanted: bool) -> None:
@@ -102,6 +104,6 @@ def begin(
 ) -> None:
     """Probabilistic lifetime and sensitivity studies of vibro-impact machines."""
     if context.invoked_subcommand is None:
-        from uq.cli.guide import guide
+        from uq.cli.models import guide
 
         guide()

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from uq.assess.comparison import ComparedOutput, ComparedStatistic, Comparison, Side, comparison
 from uq.assess.summary_facts import comparison_facts
-from uq.cli.printing import cells, grid, heading, note, paragraph, print_json
+from uq.cli.printing import cells, console, grid, heading, note, paragraph, print_json
+from uq.errors import InputError
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, interval_text
 from uq.text.numbers import compared, counted, estimated, in_brackets, in_unit, number, percent
@@ -16,9 +17,13 @@ _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
 
 
-def compare(first: Path, second: Path, json: bool) -> None:
+def compare(
+    first: Path, second: Path, json: bool, output: str | None = None, plot: Path | None = None
+) -> None:
     """Compare two results and print the comparison."""
-    differences = comparison(Result.open(first), Result.open(second))
+    differences = comparison(Result.open(first), Result.open(second), output)
+    if plot is not None:
+        _draw(differences, plot)
     if not json:
         _show(differences, first, second)
         return
@@ -26,6 +31,17 @@ def compare(first: Path, second: Path, json: bool) -> None:
     for key, path in (("a", first), ("b", second)):
         document[key] = {"file": str(path)} | document[key]
     print_json(document)
+
+
+def _draw(differences: Comparison, path: Path) -> None:
+    from uq.plots import compared_lives
+    from uq.render.figures.figure import write
+
+    if not differences.curves:
+        raise InputError("--plot: only where one result has lives from the field; leave it out")
+    form = path.suffix.removeprefix(".") or "png"
+    for file in write(compared_lives(differences), path.with_suffix(""), (form,)):
+        console.print(str(file), soft_wrap=True)
 
 
 def _show(differences: Comparison, first: Path, second: Path) -> None:
@@ -48,6 +64,18 @@ def _show(differences: Comparison, first: Path, second: Path) -> None:
         heading(f"\n{name}{in_brackets(unit)}")
         variable = compared(name, output.declared.is_angle)
         grid(_lines(output, unit.size, variable), _HEADER)
+    for name, curves in differences.curves.items():
+        at = [i for i, apart in enumerate(curves.differences) if isfinite(apart.value)]
+        if at:
+            worst = max(at, key=lambda i: abs(curves.differences[i].value))
+            apart = curves.differences[worst]
+            unit = unit_of(differences.outputs[name].units, float(curves.time[worst]))
+            place = in_unit(float(curves.time[worst]), unit)
+            ends = f" ({interval_text(apart)})" if apart.has_interval else ""
+            note(
+                f"{name}: the survival curves differ most at {place}:"
+                f" B - A {apart.value:.2g}{ends}."
+            )
     note("*: the interval excludes no difference. " + _POINTWISE)
     for text in (*bought(differences), *differences.notes):
         note(text)

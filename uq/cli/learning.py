@@ -45,6 +45,8 @@ def update(
     json: bool,
 ) -> int:
     """Update a study or a result with inspections, write the posterior, and show it."""
+    if not is_study(source):
+        Result.open(source).refuse_if_record("uq update")
     new = read(inspections)
     check_target(output, 0)
     if is_study(source):

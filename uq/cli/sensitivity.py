@@ -1,4 +1,4 @@
-"""Terminal output of ``uq sensitivity`` and ``uq levels``: tables of 80 columns."""
+"""Terminal output of ``uq sensitivity``, ``uq levels`` and ``uq trace``: tables of 80 columns."""
 
 from collections.abc import Iterator
 from math import isfinite
@@ -11,6 +11,7 @@ from uq.assess.sensitivities import Sensitivities, Values, lines
 from uq.assess.summary_facts import levels_facts
 from uq.cli.printing import grid, heading, note, paragraph, print_json, title
 from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
+from uq.render.trace.trace import Trace, trace_json, traced
 from uq.result.result import Result
 from uq.sampling.levels import LEVELS
 from uq.stats.importance_weights import worth_in_words
@@ -95,3 +96,39 @@ def _share_lines(level_shares: LevelShares) -> Iterator[tuple[str, str, str, str
     for name, share in level_shares.shares.items():
         assumes = share.assumes.removeprefix("that ")
         yield name, S1.text(share.value), S1.interval(share), assumes
+
+
+_MOST_OF_HASH = 40  # characters of a hash
+
+
+def trace(result: Path, key: str, model: str | None, json: bool) -> int:
+    """Show where a number comes from; return the exit code."""
+    provenance = traced(Result.open(result), key, model)
+    print_json(trace_json(provenance)) if json else _show_trace(provenance)
+    return 0 if provenance.equal else 1
+
+
+def _show_trace(provenance: Trace) -> None:
+    heading(provenance.key)
+    grid([(name, _or_null(value)) for name, value in provenance.numbers.items()])
+    heading("\nestimator")
+    for citation in provenance.estimators:
+        paragraph(citation.does, indent=2)
+        paragraph(citation.code, indent=4)
+        for source in citation.sources or ("no source: a definition",):
+            paragraph(source, indent=4)
+    heading("\nrows", f"{provenance.rows_used} of {provenance.rows}")
+    paragraph(provenance.which, indent=2)
+    grid([(str(count), state) for state, count in provenance.states.items()])
+    for text in provenance.notes:
+        paragraph(text, indent=2)
+    heading("\nmade by")
+    here = {f"{name} here": version for name, version in provenance.versions_here.items()}
+    made = {**provenance.recorded, **provenance.versions, **here}
+    grid([(name, str(value)[:_MOST_OF_HASH]) for name, value in made.items()])  # hashes are longer
+    equal = "equal to the bit" if provenance.equal else f"NOT EQUAL: {provenance.again}"
+    note(f"Computed again from these rows: {equal}.")
+
+
+def _or_null(value: object) -> str:
+    return "null" if value is None else str(value)

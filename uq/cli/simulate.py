@@ -10,8 +10,7 @@ from uq.cli.printing import duration, grid, heading, number, print_json
 from uq.cli.progress import say_compiling, say_plain
 from uq.contract import Model, Status
 from uq.errors import InputError
-from uq.execution.loading import load_model
-from uq.execution.single_row import run_alone
+from uq.execution.loading import load_model, run_alone
 from uq.files.whole_files import file_behind
 from uq.machines.compilation import compilation
 from uq.machines.row_by_row import undeclared_lives

@@ -1,8 +1,9 @@
 """Card, answer and summary of a result, 80 columns wide."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from math import isnan
+from pathlib import Path
 from typing import NamedTuple
 
 from rich.text import Text
@@ -43,6 +44,13 @@ def show_findings(findings: Findings, *, explain: bool = False, full: bool = Fal
         console.print(text, soft_wrap=True)
 
 
+def show_card(path: Path, notes: Iterable[str]) -> None:
+    """Print the card of a result that has just been written, and notes on it."""
+    show_findings(Findings(Result.open(path)))
+    for text in notes:
+        note(text)
+
+
 def show_summary(result: Result, summary: Summary, boundary: Statistic | None = None) -> None:
     """Print a summary, and how intermingled its regimes are."""
     design = f"{result.design_name}, {counted(summary.samples, 'row')}"
@@ -73,7 +81,7 @@ def show_summary(result: Result, summary: Summary, boundary: Statistic | None = 
             for text in statistic.notes:
                 paragraph(text, indent=2)
         if output.fits:
-            _show_fits(output.fits, block)
+            _show_fits(output, block)
     for text in summary.notes:
         note(text)
 
@@ -190,25 +198,54 @@ def _reasons(output: Described, block: Block) -> Iterator[str]:
         yield f"{', '.join(labels)}: {reason}"
 
 
-def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:
-    """Print the adequate life distributions with their B-lives, and why others are rejected."""
+_LAWS_IN_A_TABLE = 2
+
+
+def _show_fits(output: Described, block: Block) -> None:
+    """Print the adequate life distributions with their B-lives, and why others are rejected.
+
+    B-lives as estimated from the rows alone are beside them.
+    """
+    fits = output.fits
     for law, fit in fits.items():
         if fit.refused:
             paragraph(f"{law}: {fit.refused}", indent=2)
     accepted = {law: fit for law, fit in fits.items() if not fit.refused}
     if not accepted:
         return
-    lines = [("p of the test", *chain(*((f"{fit.p_value:.2g}", "") for fit in accepted.values())))]
+    named = list(accepted.items())
+    for first in range(0, len(named), _LAWS_IN_A_TABLE):
+        _show_laws(dict(named[first : first + _LAWS_IN_A_TABLE]), output, block)
+    for assumed in dict.fromkeys(fit.assumes for fit in accepted.values()):
+        paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)
+
+
+def _show_laws(accepted: Mapping[str, Fit], output: Described, block: Block) -> None:
+    lines: list[tuple[str, ...]] = []
+    if any(not isnan(fit.p_value) for fit in accepted.values()):
+        tests = chain(*((_p_value(fit), "") for fit in accepted.values()))
+        lines.append(("p of the test", *tests, ""))
+    if any(not isnan(fit.log_likelihood) for fit in accepted.values()):
+        aics = chain(*((number(fit.aic), "") for fit in accepted.values()))
+        lines.append(("aic", *aics, ""))
     laws = [{**fit.parameters, **fit.b_lives} for fit in accepted.values()]
     parameters = dict.fromkeys(chain(*(fit.parameters for fit in accepted.values())))
     for name in (*parameters, *B_LIVES):
         extrapolated = any(name in fit.extrapolated for fit in accepted.values())
-        per = 1.0 if name in ("shape", "sigma") else block.unit.size
+        per = 1.0 if name in _PURE_PARAMETERS else block.unit.size
         numbers = chain(*(_cells(law.get(name), per) for law in laws))
-        lines.append((f"{name}, extrapolated" if extrapolated else name, *numbers))
-    grid(lines, header=("", *(cell for law in accepted for cell in (law, "95 % interval"))))
-    assumed = next(iter(accepted.values())).assumes
-    paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)
+        of_rows = output.find("b_lives", name) if name in B_LIVES else None
+        rows = number(of_rows.best.estimate.value / per) if of_rows else ""
+        lines.append((f"{name}, extrapolated" if extrapolated else name, *numbers, rows))
+    header = (cell for law in accepted for cell in (law, "95 % interval"))
+    grid(lines, header=("", *header, "rows"))
+
+
+_PURE_PARAMETERS = ("shape", "sigma", "share", "shape_1", "shape_2")
+
+
+def _p_value(fit: Fit) -> str:
+    return "" if isnan(fit.p_value) else f"{fit.p_value:.2g}"
 
 
 def _cells(estimate: Estimate | None, per: float) -> tuple[str, str]:

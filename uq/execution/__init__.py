@@ -14,11 +14,10 @@ Reading order; each part imports only those above it:
     scaling_checks  check the scaling exponents declared by an external machine against
     resuming        start or resume a run whose rows are kept on disk
     workers         dask workers, local or on a cluster
-    loading         load studies and models
+    loading         load studies and models, and run one row of a model
     clusters        dask workers of this computer, or of an existing cluster
     recomputed_row  recomputation of a stored row, and its comparison with the stored values
     recomputed_result  a result computed again from what its rows have kept
-    single_row      one row of a model, in a separate process if the model may crash
     executor        rows of one run
     planning        cost of a study, estimated from a few of its rows
     runner          run of a study: rows in chunks, on this computer or on dask workers

@@ -1,4 +1,4 @@
-"""Load studies and models, and infer the outputs of functions that do not declare them.
+"""Load studies and models, run one row, and infer the outputs of functions without declarations.
 
 The nominal row and the first rows of the design are run in a separate process. The inferred outputs
 are cached on this computer until the function changes.
@@ -7,21 +7,22 @@ are cached on this computer until the function changes.
 import hashlib
 import json
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from uq.contract import Model, Status
 from uq.errors import InputError, first_fault_alone
-from uq.execution.child import ModelSpec
+from uq.execution.child import Action, ModelSpec
 from uq.execution.isolation import Isolated
 from uq.execution.options import Say, ignore
 from uq.files.whole_files import cache_path
 from uq.machines.returned import Returned, as_plain, from_plain, joined
 from uq.machines.row_by_row import RowByRow
+from uq.result.one_row import Row, run_row
 from uq.study.evaluate import RowFailure
 from uq.study.installed_models import code_of, located, model_at, with_returns
 from uq.study.sources import DISTRIBUTION
@@ -36,7 +37,7 @@ SEEN = 64
 _WORTH_KEEPING = 1.0  # seconds that these rows took
 _SLOW = 3.0  # seconds after which a user is told that rows are run
 
-Row = tuple[list[float], int]
+TrialRow = tuple[list[float], int]
 
 
 def load_study(
@@ -128,7 +129,7 @@ def _with_outputs(study: "Study", say: Say = ignore, limit: float | None = None)
 
 
 def _observed_outputs(
-    reference: str, tried: list[Row], say: Say = ignore, limit: float | None = None
+    reference: str, tried: list[TrialRow], say: Say = ignore, limit: float | None = None
 ) -> dict[str, Returned]:
     """Infer the outputs of a function from trial rows, the nominal row first."""
     from uq.study.provenance import __version__
@@ -149,7 +150,7 @@ def _observed_outputs(
 
 
 def _returned(
-    reference: str, tried: list[Row], say: Say, limit: float | None
+    reference: str, tried: list[TrialRow], say: Say, limit: float | None
 ) -> Iterator[dict[str, Returned]]:
     """Yield the outputs inferred from trial rows; failures after the nominal row are skipped.
 
@@ -185,3 +186,33 @@ def _returned(
                 yield from_plain(outcome)
             elif done == 1:
                 raise InputError(f"model '{reference}': its nominal row {outcome}")
+
+
+_STDERR = 2
+
+
+def run_alone(
+    reference: str,
+    parameters: Mapping[str, float],
+    settings: Mapping[str, Any],
+    seed: int = 0,
+    compiling: Action = lambda: None,
+) -> Row:
+    """Run a model once; output printed by an external model goes to standard error.
+
+    Parameters
+    ----------
+    reference : str
+        As for `uq.study.installed_models.model_at`.
+    parameters, settings, seed
+        As for `uq.simulate`.
+    compiling : callable
+        Called when another process starts to compile.
+    """
+    reference = known_reference(reference)
+    model = model_at(reference)
+    if not isinstance(model.batch, RowByRow):
+        return run_row(model, parameters, settings, seed)
+    spec = ModelSpec(reference, model.version, (), code=code_of(reference))
+    with Isolated(spec, None, compiling, prints=_STDERR).running() as batch:
+        return run_row(model, parameters, settings, seed, lambda x, seeds: batch(x, seeds, 0))

@@ -10,6 +10,7 @@ import xarray as xr
 
 from uq.contract import Model, Status
 from uq.errors import InputError
+from uq.execution.loading import run_alone
 from uq.execution.recomputed_row import (
     computed_again,
     differing,
@@ -17,7 +18,6 @@ from uq.execution.recomputed_row import (
     settings_by_row,
     study_here,
 )
-from uq.execution.single_row import run_alone
 from uq.files.interrupts import in_background
 from uq.files.netcdf_files import refuse_tricks
 from uq.result import result_file

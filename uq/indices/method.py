@@ -223,7 +223,9 @@ class SensitivityMethod:
         return replace(indices, notes=(note, *indices.notes) if note else indices.notes)
 
     def refuse_few_groups(self, sample: DesignSample) -> None:
-        """Raise `RefusedError` if there are too few complete groups."""
+        """Raise `RefusedError` if there are no inputs, or too few complete groups."""
+        if not sample.inputs:
+            raise RefusedError("the rows have no inputs")
         kept, every = int(sample.whole.sum()), sample.whole.size
         if kept < self.least:
             where = " where the event happens" * self.conditional

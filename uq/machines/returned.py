@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Output, Status
+from uq.contract import Output, Status, high_name
 from uq.errors import InputError, nearest
 
 _MOST_NAMES = 5  # that a message lists
@@ -39,6 +39,33 @@ def censored(time: float) -> Censored:
 
 
 @dataclass(frozen=True)
+class Between(Censored):
+    """A life known to end after `time` and not after `high`; see `between`."""
+
+    high: float = np.inf
+
+
+def between(low: float, high: float) -> Between:
+    """Return a life known to end between two times, for a machine to return.
+
+    Parameters
+    ----------
+    low, high : float
+        It had not ended at `low`, 0 if that was never seen, and had ended at `high`.
+
+    Examples
+    --------
+    >>> @uq.machine(returns={"life": uq.Returned("s", life=True, between=True)})
+    ... def machine(rate: float = 1e-9, depth: float = 2.5e-4):
+    ...     outage = 3e7 * (depth / rate // 3e7)  # inspected once a year
+    ...     return {"life": uq.between(outage, outage + 3e7)}
+    """
+    if not 0 <= low < high:
+        raise ValueError(f"uq.between({low!r}, {high!r}): low must be at least 0 and below high")
+    return Between(float(low), float(high))
+
+
+@dataclass(frozen=True)
 class Returned:
     """Declaration of an output of a machine.
 
@@ -55,6 +82,8 @@ class Returned:
         Whether NaN is legitimate.
     scales : dict of str to float
         Of a life, parameter -> exponent: see `uq.contract.Output`.
+    between : bool
+        Of a life: whether it may be known within an interval only, as by `uq.between`.
     """
 
     unit: str = "1"
@@ -63,6 +92,7 @@ class Returned:
     shape: tuple[int, ...] = ()
     may_be_undefined: bool = False
     scales: Mapping[str, float] = field(default_factory=dict, hash=False)
+    between: bool = False
 
     def output(self, name: str) -> Output:
         """Return its declaration under a name."""
@@ -72,6 +102,7 @@ class Returned:
             "lifetime" if self.life else "value",
             tuple(dimensions(name, self.shape)),
             may_be_undefined=self.may_be_undefined,
+            may_be_between=self.life and self.between,
             scales=self.scales,
         )
 
@@ -177,6 +208,22 @@ def _plain(element: Any) -> Any:
     return float(number) if isinstance(element, Number) else element
 
 
+def _has_between(value: Any) -> bool:
+    given = np.asarray(value)
+    return given.dtype == object and any(isinstance(element, Between) for element in given.flat)
+
+
+def upper_bounds(value: Any, numbers: NDArray[np.float64], cut: Any) -> NDArray[np.float64]:
+    """Return the upper bounds of lives: of `between` its own, of `censored` infinity."""
+    high = np.where(cut, np.inf, numbers)
+    given = np.asarray(value)
+    if given.dtype == object:
+        for place, element in enumerate(given.flat):
+            if isinstance(element, Between):
+                high.flat[place] = element.high
+    return high
+
+
 def seen_in(row: Any) -> dict[str, Returned]:
     """Infer outputs from a row: names, shapes, and lives that are ``inf`` or `censored`.
 
@@ -195,14 +242,18 @@ def seen_in(row: Any) -> dict[str, Returned]:
             raise RowError(f"returned {name!r}, which cannot be the name of an output")
         numbers, cut = numbers_of(value, name)
         life = bool(cut.any() or np.isposinf(numbers).any())
-        outputs[name] = Returned(life=life, shape=numbers.shape)
+        outputs[name] = Returned(life=life, shape=numbers.shape, between=_has_between(value))
     return outputs
 
 
 def joined(rows: Sequence[Mapping[str, Returned]]) -> dict[str, Returned]:
     """Merge the outputs inferred from rows: names and shapes of the first, lives of any."""
     return {
-        name: replace(first, life=any(name in row and row[name].life for row in rows))
+        name: replace(
+            first,
+            life=any(name in row and row[name].life for row in rows),
+            between=any(name in row and row[name].between for row in rows),
+        )
         for name, first in rows[0].items()
     }
 
@@ -224,7 +275,8 @@ def checked(
 ) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.bool_]]]:
     """Yield name, numbers and censoring mask of each output of a row.
 
-    A tuple has the outputs in the order of `expected`, for compiled functions without dicts.
+    Upper bounds of a life that may be between two times follow it as ``<name>_high``. A tuple has
+    the outputs in the order of `expected`, for compiled functions without dicts.
 
     Raises
     ------
@@ -256,9 +308,16 @@ def checked(
                 f" in Python: returns={{'{name}': uq.Returned(life=True)}}, in a machine file:"
                 " life = true"
             )
+        if not declaration.between and _has_between(returned[name]):
+            raise RowError(
+                f"returned '{name}' as a life between two times, which it is not declared to be;"
+                f" write returns={{'{name}': uq.Returned(life=True, between=True)}}"
+            )
         output = declaration.output(name)
         invalid = output.is_invalid(numbers)
         if invalid.any():
             message = f"'{name}' {output.absence(numbers[invalid][0])}"
             raise RowError(message, Status.NON_FINITE)
         yield name, numbers, cut
+        if output.may_be_between:
+            yield high_name(name), upper_bounds(returned[name], numbers, cut), cut

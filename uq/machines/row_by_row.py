@@ -15,7 +15,7 @@ from typing import Annotated, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats, Model, Output, Parameter, Status, censored_name
+from uq.contract import Floats, Model, Output, Parameter, Status, censored_name, high_name
 from uq.errors import InputError, described
 from uq.machines.returned import Returned, RowError, checked, dimensions
 from uq.machines.study_defaults import StudyDefaults
@@ -134,6 +134,7 @@ def _name_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[s
             name,
             *dimensions(name, declaration.shape),
             *([censored_name(name)] if declaration.life else []),
+            *([high_name(name)] if declaration.life and declaration.between else []),
         ]
         for new in made:
             if new in taken:
@@ -197,7 +198,7 @@ class RowByRow:
             try:
                 for name, numbers, cut in checked(self.row(row, int(seed[i])), self.returned):
                     columns[name][i] = numbers
-                    if self.returned[name].life:
+                    if name in self.returned and self.returned[name].life:
                         columns[censored_name(name)][i] = cut
             except RowError as error:
                 status[i], messages[i] = error.status, str(error)
@@ -215,6 +216,8 @@ class RowByRow:
             columns[name] = np.full((rows, *declaration.shape), np.nan)
             if declaration.life:
                 columns[censored_name(name)] = np.full(columns[name].shape, False)
+            if declaration.life and declaration.between:
+                columns[high_name(name)] = np.full(columns[name].shape, np.nan)
         return columns
 
     def kept(self, row: list[float], seed: int) -> str:

@@ -9,6 +9,7 @@ Reading order; each part imports only those above it:
     weights      posterior weights of rows: their variables in a result, and checks of them
     soundness    checks of a Dataset that may be damaged or come from an untrusted file
     result_file  the schema of a result
+    life_record  lives from the field, read from CSV
     elements     the elements of a result's outputs
     workload     workload: rows of one model to compute, and running statistics of arriving rows
     result       a result: the Dataset of its rows, with its attributes parsed once

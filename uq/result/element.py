@@ -7,6 +7,7 @@ from math import inf
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Output
 from uq.text.element_names import Place
@@ -50,6 +51,12 @@ class Element:
         Where the value is missing because the row failed.
     law : RowLaw, optional
         Conditional law of the life in each row, if the inputs that scale it are integrated.
+    high : ndarray, shape (n,), optional
+        Upper bounds of censored lives that are known to end between two times, else infinite.
+    entered : ndarray, shape (n,), optional
+        Times from which rows were under observation: late entry.
+    causes : ndarray of int8, shape (n,), optional
+        Index into the causes of the life; -1 where it has not ended.
     weights : ndarray, shape (n,), optional
         Weights of the rows, if they represent a posterior or another study.
     most : float
@@ -64,6 +71,9 @@ class Element:
     censored: Mask
     failed: Mask
     law: RowLaw | None = None
+    high: Floats | None = None
+    entered: Floats | None = None
+    causes: NDArray[np.int8] | None = None
     weights: Floats | None = None
     most: float = inf
 
@@ -109,7 +119,20 @@ class Element:
 
     def unknown_sides(self, threshold: float) -> Mask:
         """Return the mask of rows censored below a threshold, whose side is unknown."""
-        return self.censored & (self.values < threshold)
+        unknown = self.censored & (self.values < threshold)
+        return unknown if self.high is None else unknown & (self.high >= threshold)
+
+    @property
+    def within_interval(self) -> Mask:
+        """Mask of rows whose life is known to end between two times."""
+        if self.high is None:
+            return np.zeros_like(self.censored)
+        return self.censored & np.isfinite(self.high)
+
+    @property
+    def has_intervals_or_entries(self) -> bool:
+        """Whether lives are known within intervals, or rows entered late."""
+        return self.entered is not None or bool(self.within_interval.any())
 
     @property
     def is_plain(self) -> bool:
@@ -130,7 +153,10 @@ class Element:
             return self.law.below(self.values, threshold)
         values = self.values if signed else self.for_thresholds
         with np.errstate(invalid="ignore"):
-            return ((values < threshold) & ~self.censored).astype(float)
+            below = (values < threshold) & ~self.censored
+            if self.high is not None:
+                below |= self.censored & (self.high < threshold)
+            return below.astype(float)
 
     def above(self, threshold: float) -> Floats:
         """Return the probability that each row is above a threshold, shape (n,)."""
@@ -152,8 +178,9 @@ class Element:
 
     @property
     def at_most(self) -> Floats:
-        """The values, shape (present,), with censored ones at infinity."""
-        return np.where(self.censored, np.inf, self.values)[self.present]
+        """The values, shape (present,), with censored ones at their upper bound or infinity."""
+        latest = np.inf if self.high is None else self.high
+        return np.where(self.censored, latest, self.values)[self.present]
 
 
 def elements_in(
@@ -166,6 +193,7 @@ def elements_in(
     weights: Floats | None = None,
     most: float = inf,
     where: Iterable[Place] | None = None,
+    beside: Mapping[str, Any] | None = None,
 ) -> Iterator[Element]:
     """Yield the elements of one output, in order.
 
@@ -188,6 +216,8 @@ def elements_in(
         The largest weight that a row can have.
     where : iterable of Place, optional
         Which elements; by default all.
+    beside : dict of str to array, shape (n, *dims)
+        Companions of a life, by their names in `Element`: ``high``, ``entered``, ``causes``.
 
     Yields
     ------
@@ -201,6 +231,9 @@ def elements_in(
         cut = np.zeros(len(column), dtype=bool)
         if censored is not None:
             cut = np.asarray(censored[(slice(None), *index)]).astype(bool) & ~absent
+        of_place: dict[str, Any] = {
+            key: np.asarray(array[(slice(None), *index)]) for key, array in (beside or {}).items()
+        }
         yield Element(
             label,
             name,
@@ -211,4 +244,5 @@ def elements_in(
             absent & failed,
             weights=weights,
             most=most,
+            **of_place,
         )

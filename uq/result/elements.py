@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats as Floats
 from uq.contract import Mask as Mask
-from uq.contract import censored_name
+from uq.contract import cause_name, censored_name, entered_name, high_name
 from uq.errors import InputError, choices, nearest
 from uq.result.element import Element as Element
 from uq.result.element import elements_in, places
@@ -232,7 +232,19 @@ def _elements_at(
         censored = ds.variables[flag] if flag in ds else None
         rows = failed(ds), row_weights(ds), largest_weight(ds)
         values = ds.variables[output]
-        yield from elements_in(output, declared, values, censored, axes, *rows, where(axes))
+        beside = {
+            key: ds.variables[name]
+            for key, name in zip(_COMPANIONS, _companion_names(output), strict=True)
+            if declared.is_lifetime and name in ds.variables
+        }
+        yield from elements_in(output, declared, values, censored, axes, *rows, where(axes), beside)
+
+
+_COMPANIONS = ("high", "entered", "causes")
+
+
+def _companion_names(output: str) -> tuple[str, str, str]:
+    return high_name(output), entered_name(output), cause_name(output)
 
 
 def named_elements(ds: xr.Dataset, name: str) -> list[Element]:

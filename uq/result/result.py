@@ -48,6 +48,7 @@ from uq.sampling.levels import CHANCE, LEVELS
 from uq.stats.dependent_rows import Dependence
 from uq.stats.importance_weights import ImportanceWeights
 from uq.study.file import AnalysisTable, StudyFile, Tied
+from uq.study.installed_models import FIELD_RECORD
 from uq.study.reading import study_of_result
 from uq.text.numbers import counted
 from uq.text.units import ReadableUnit, typical, unit_of
@@ -127,6 +128,24 @@ class Result:
     def design(self) -> Design:
         """The design of the rows."""
         return DESIGNS[self.design_name]
+
+    @property
+    def is_field_record(self) -> bool:
+        """Whether the rows are lives from the field, which no model computed."""
+        return self.dataset.attrs["model"] == FIELD_RECORD
+
+    def refuse_if_record(self, question: str) -> None:
+        """Refuse a question that lives from the field cannot answer, as no model computed them.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.is_field_record:
+            raise InputError(
+                f"{question}: {self.file} has lives from the field, which no model computed; ask it"
+                " of a simulated study"
+            )
 
     @property
     def is_random(self) -> bool:

@@ -36,7 +36,7 @@ from uq.result.variables import (
 )
 from uq.study.evaluate import failed_rows
 from uq.study.file import source_of_fixed
-from uq.study.installed_models import made_here, model_names, without_returns
+from uq.study.installed_models import FIELD_RECORD, made_here, model_names, without_returns
 from uq.study.model_files import file_with, shortened
 from uq.study.provenance import provenance
 from uq.text.literals import without_control
@@ -77,7 +77,7 @@ def model_option(ds: xr.Dataset) -> str:
     given = ds.encoding.get(_MODEL, model)
     if given != model:
         return f" --model {shortened(given)}"
-    if model in model_names():
+    if model == FIELD_RECORD or model in model_names():
         return ""
     folders = [Path(), *Path(str(ds.encoding.get(_FILE, "."))).parents][:_NEAR]
     return f" --model {file_with(model, folders) or 'FILE'}"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from uq.contract import Status, censored_name
+from uq.contract import Status, censored_name, entered_name, high_name
 from uq.errors import InputError
 from uq.files.whole_files import check_target, whole
 from uq.result.elements import labels
@@ -62,6 +62,10 @@ def _columns(result: Result, output: str) -> Iterator[tuple[str, Any]]:
         yield _heading(result, output, name), values.values[place]
         if flag is not None and flag.values[place].any():
             yield f"{name}_censored", flag.values[place].astype(bool)
+        for beside in (high_name(output), entered_name(output)):
+            if beside in result.dataset:
+                heading = _heading(result, output, name.replace(output, beside, 1))
+                yield heading, result.dataset[beside].values[place]
 
 
 def _heading(result: Result, name: str, element: str = "") -> str:

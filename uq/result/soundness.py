@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.contract import Kind, Status
+from uq.contract import Kind, Status, entered_name, high_name
 from uq.result.variables import outputs_of
 from uq.result.weights import has_rounds, weight_faults
 from uq.sampling.designs import DESIGNS
@@ -75,7 +75,7 @@ _NUMBERS = ("samples", "replicates")
 _OPTIONAL_NUMBERS = ("seed", "second_order", "random")
 _OF_OUTPUTS = ("thresholds", "joint_bounds")  # tables of [analysis] whose keys are outputs
 _PLACES = ("replicate", "group", "block", "status")
-_ROLES = ("input", "fixed", "output", "censored", "status", "rerun")
+_ROLES = ("input", "fixed", "output", "censored", "high", "entered", "status", "rerun")
 
 
 def unsound(ds: xr.Dataset) -> str:
@@ -124,7 +124,9 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
         role = variable.attrs.get("role")
         if role not in _ROLES:
             continue
-        if role in ("input", "output", "censored") and variable.dims[:1] != ("row",):
+        if role in ("input", "output", "censored", "high", "entered") and variable.dims[:1] != (
+            "row",
+        ):
             yield f"'{name}' has no row dimension"
         if (role == "input" and variable.ndim != 1) or (role == "fixed" and variable.ndim):
             yield f"'{name}' is not one number{' per row' * (role == 'input')}"
@@ -139,6 +141,7 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
                 yield f"'{name}' lacks the attribute '{attribute}'"
         if role == "output":
             yield from _output_faults(str(name), variable)
+    yield from _companion_faults(ds)
     yield from value_faults(ds)
     yield from weight_faults(ds)
 
@@ -271,6 +274,27 @@ def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
     for dim in variable.dims[1:]:
         if dim not in variable.coords:
             yield f"'{name}' lacks the coordinate '{dim}'"
+
+
+def _companion_faults(ds: xr.Dataset) -> Iterator[str]:
+    """Yield the faults of upper bounds and entries of lives."""
+    complete = ds["status"].values == Status.OK
+    for name, output in outputs_of(ds).items():
+        if not output.is_lifetime:
+            continue
+        values = ds[name].values[complete]
+        for beside, meaning in ((high_name(name), "below"), (entered_name(name), "above")):
+            if beside not in ds.variables:
+                continue
+            if ds[beside].dims != ds[name].dims:
+                yield f"'{beside}' has not the dimensions of '{name}'"
+                continue
+            bounds = ds[beside].values[complete]
+            wrong = bounds < values if meaning == "below" else (bounds > values) | (bounds < 0)
+            if meaning == "above" and high_name(name) in ds.variables:
+                wrong = (bounds >= ds[high_name(name)].values[complete]) | (bounds < 0)
+            if (np.isnan(bounds) & ~np.isnan(values) | wrong).any():
+                yield f"'{beside}' is {meaning} '{name}' or not a number, in a valid row"
 
 
 def _flag_fault(variable: xr.DataArray) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.contract import Model, Output, Status, censored_name
+from uq.contract import Model, Output, Status, cause_name, censored_name, high_name
 from uq.study.installed_models import made_here
 from uq.study.row_sampling import block_labels
 
@@ -81,6 +81,9 @@ def output_variables(
             flag = censored_name(name)
             attrs = {"role": "censored", "long_name": f"whether {name} is only a lower bound"}
             variables[flag] = (dims, columns[flag].astype(np.int8), attrs)
+        if output.may_be_between:
+            attrs = {"role": "high", "units": output.unit, "long_name": f"upper bound of {name}"}
+            variables[high_name(name)] = (dims, columns[high_name(name)], attrs)
     attrs = {"role": "status", "long_name": "how the row ended"}
     attrs |= _flags([status.label for status in Status], np.int8)
     for label, message in failures.items():
@@ -106,11 +109,20 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
             success=str(variable.attrs.get("success", "")),
             never_known_at_once=bool(variable.attrs.get("never_known_at_once", True)),
             shown=bool(variable.attrs.get("shown", True)),
+            causes=_causes(ds, str(name)),
+            may_be_between=high_name(str(name)) in ds,
             scales=json.loads(variable.attrs.get("scales", "{}")),
         )
         for name, variable in ds.variables.items()
         if variable.attrs.get("role") == "output"
     }
+
+
+def _causes(ds: xr.Dataset, name: str) -> tuple[str, ...]:
+    """Return the causes that may end a lifetime."""
+    if ds[name].attrs["kind"] != "lifetime" or cause_name(name) not in ds.variables:
+        return ()
+    return tuple(str(ds[cause_name(name)].attrs.get("flag_meanings", "")).split()[1:])
 
 
 def coordinates(model: Model, settings: Any) -> dict[str, Any]:

@@ -12,7 +12,6 @@ Reading order; each part imports only those above it:
     data_files     columns of numbers named by a study file
     listed_values  laws of listed values: choices, integers, measured values or their histogram
     scipy_laws     continuous laws of an uncertain parameter
-    wear_coefficients  published wear coefficients of pairs of materials
     laws           registry of the laws by name
     truncation     laws truncated to the bounds of their parameter
     log_sums       distribution of a sum of independent terms

@@ -11,7 +11,7 @@ from typing import Annotated, Any, get_args
 from pydantic import BaseModel, Field, TypeAdapter
 
 from uq.errors import nearest
-from uq.sampling import listed_values, scipy_laws, wear_coefficients
+from uq.sampling import listed_values, scipy_laws
 from uq.sampling.input_faults import MISSING, InputFault, fault_of, unknown
 from uq.sampling.law import Law
 
@@ -34,7 +34,7 @@ LAWS: dict[str, type[Law]] = {
         listed_values.IntegerRange,
         listed_values.Empirical,
         listed_values.Histogram,
-        wear_coefficients.WearCoefficient,
+        scipy_laws.WearCoefficient,
     )
 }
 """Name in a study file -> law, in the order in which laws are listed."""

@@ -14,7 +14,9 @@ Reading order; each part imports only those above it:
     control_variate       control variates
     group_sequential      group-sequential confidence levels
     order_statistics      sample quantiles, their confidence intervals, and tolerance bounds
-    survival_curves       survival curves of censored lives
+    survival_curves       survival curves of censored lives, cumulative incidence by cause
+    interval_censoring    nonparametric likelihood of lives known within intervals, with late entry
+    life_likelihood       maximum likelihood for laws of lives, profile-likelihood intervals
     tails                 tail index of an output, which determines the moments that exist
     uncertainty_exponent  uncertainty exponent of a basin boundary
     variance_components   variance components of nested rows

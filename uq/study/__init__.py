@@ -15,8 +15,7 @@ Reading order; each part imports only those above it:
     input_checks      consistency checks of inputs with each other
     schema            JSON Schema of a study file, for editors
     definition        study
-    variant           a variant of a study: another design and name
-    template          template of a study file for a model
+    template          template of a study file for a model, and variants of a study
     hints             hints on intervals, indices and bounds that a study cannot give
     row_sampling      rows of a study
 """

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats, Mask, Model, Output, Status, censored_name
+from uq.contract import Floats, Mask, Model, Output, Status, censored_name, high_name
 from uq.errors import InputError, described
 
 
@@ -30,6 +30,8 @@ def columns_of(model: Model, settings: Any) -> dict[str, NDArray[Any]]:
         columns[name] = np.full(shape, blank)
         if output.has_censored_flag:
             columns[censored_name(name)] = np.full(shape, False)
+        if output.may_be_between:
+            columns[high_name(name)] = np.full(shape, np.nan)
     return columns
 
 

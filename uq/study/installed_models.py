@@ -41,6 +41,10 @@ def model_names() -> tuple[str, ...]:
     return tuple(sorted(_entry_points()))
 
 
+FIELD_RECORD = "field-record"
+"""Name in a result of what produced lives that were imported: no model."""
+
+
 def find_model(name: str, folder: Path | None = None) -> Model:
     """Return an installed model by its name.
 
@@ -147,6 +151,11 @@ def _point(reference: str) -> EntryPoint:
 def _installed(name: str, folder: Path | None = None) -> EntryPoint:
     """Return the entry point of an installed model."""
     installed = _entry_points()
+    if name == FIELD_RECORD:
+        raise InputError(
+            "these are lives from the field, read by 'uq import': no model computes such rows;"
+            " 'uq compare' sets them beside a simulated study"
+        )
     if name not in installed:
         if file := file_with(name, filter(None, (Path(), folder))):
             raise InputError(

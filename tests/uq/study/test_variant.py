@@ -6,7 +6,7 @@ import pytest
 
 from uq.execution.loading import load_study
 from uq.study.definition import study_from_text
-from uq.study.variant import variant
+from uq.study.template import variant
 
 STUDIES = Path(__file__).parents[3] / "studies"
 

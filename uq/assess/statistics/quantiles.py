@@ -50,7 +50,7 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
         has_curve = element.is_lifetime and "life_quantile" in sample.by  # of Kaplan and Meier
         guess = sample.life_quantile(p) if has_curve else NOTHING
         label = f"{statistic.label}, if"
-        if guess.assumes:
+        if guess.assumes and not statistic.estimate.assumes:
             by = sample.by["life_quantile"]
             otherwise = replace(statistic, label=label, estimate=guess, by=by)
             statistic = replace(statistic, otherwise=otherwise)

@@ -1,6 +1,7 @@
 """The statistics of an output. To add one, write its maker and list it here."""
 
 from uq.assess.statistic import Maker
+from uq.assess.statistics.causes import causes
 from uq.assess.statistics.counts import accuracy, counts, effective
 from uq.assess.statistics.moments import between_regimes, moments_of
 from uq.assess.statistics.quantiles import b_lives, integrated, quantiles, thresholds
@@ -13,6 +14,7 @@ STATISTICS: dict[str, Maker] = {
     "tolerance": tolerance,
     "joint_bounds": joint,
     "thresholds": thresholds,
+    "causes": causes,
     "between_regimes": between_regimes,
     "counts": counts,
     "effective": effective,

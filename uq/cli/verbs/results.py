@@ -114,7 +114,7 @@ def summary(
     result: given.ResultFile,
     regime: given.Regime = None,
     fits: Annotated[
-        bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
+        bool, typer.Option("--fits", help="Fit laws to lifetimes by maximum likelihood.")
     ] = False,
     plain: given.Plain = False,
     explain: given.Explain = False,
@@ -150,6 +150,55 @@ def summary(
     else:
         summary_tables.show_summary(opened, statistics)
     _warn_if_altered(result)
+
+
+def import_(
+    data: Annotated[Path, typer.Argument(metavar="DATA.csv", help="Lives, one row each.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="OUT.nc", help="Where to write the result.")
+    ],
+    life: Annotated[
+        str, typer.Option(metavar="COLUMN", help="Life, or time of censoring; names the output.")
+    ],
+    unit: Annotated[
+        str, typer.Option(metavar="UNIT", help="Of all times, such as h; or in the headings.")
+    ] = "",
+    censored: Annotated[
+        str, typer.Option(metavar="COLUMN", help="1 where the life had not ended, else 0.")
+    ] = "",
+    low: Annotated[
+        str, typer.Option(metavar="COLUMN", help="Known to end after this time; 0 or empty: any.")
+    ] = "",
+    high: Annotated[
+        str, typer.Option(metavar="COLUMN", help="And not after this one; empty: has not ended.")
+    ] = "",
+    entered: Annotated[
+        str, typer.Option(metavar="COLUMN", help="Age at the start of observation (late entry).")
+    ] = "",
+    cause: Annotated[
+        str, typer.Option(metavar="COLUMN", help="Event that ended the life; empty: none.")
+    ] = "",
+    threshold: given.Times = None,
+    quiet: given.Quiet = False,
+) -> None:
+    """Read lives from the field into a result; other columns of numbers become inputs."""
+    from uq.cli import summary_tables
+    from uq.files.whole_files import check_target, write_result
+    from uq.result.life_record import RecordColumns, read_lives
+
+    check_target(output, 0)
+    columns = RecordColumns(life, unit, censored, low, high, entered, cause)
+    record, notes = read_lives(data, columns, [_number_or_text(at) for at in threshold or ()])
+    write_result(record, output)
+    if not quiet:
+        summary_tables.show_card(output, notes)
+
+
+def _number_or_text(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def export(
@@ -262,12 +311,23 @@ def compare(
             autocompletion=completion.complete_result,
         ),
     ],
+    output: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="The lifetime to set imported lives beside.",
+            autocompletion=completion.complete_output,
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="F.png", help="Draw imported and simulated lives here.")
+    ] = None,
     json: given.Json = False,
 ) -> None:
-    """Show how two studies of one model differ."""
+    """Show how two studies of one model differ, or lives from the field and a study."""
     from uq.cli import compare
 
-    compare.compare(first, second, json)
+    compare.compare(first, second, json, output, plot)
 
 
 def what_if(
@@ -316,7 +376,7 @@ def trace(
     json: given.Json = False,
 ) -> int:
     """Show where a number comes from, and compute it again."""
-    from uq.cli import trace as tracing
+    from uq.cli import sensitivity as tracing
 
     return tracing.trace(result, key, model, json)
 

@@ -98,7 +98,7 @@ def init(
         raise InputError("uq init: --model goes with --from STUDY; else it is the argument")
     if from_ is not None:
         from uq.execution.loading import load_study
-        from uq.study.variant import variant
+        from uq.study.template import variant
 
         print(variant(load_study(from_, own_model), design, name), end="")
         return

@@ -11,6 +11,7 @@ Reading order; each part imports only those above it:
     motion_plot         figures of a machine's motion
     response_plot       figures of a machine's response
     distribution_plots  figures of the distribution of an output
+    life_plots          figures of lives by cause, on probability paper, beside simulated ones
     quantile_table      the table of quantiles of an output, and tables as files: CSV and LaTeX
     input_plot          the figure of the inputs: the stated law of each, and its sampled values
     scatter_plot        scatter plots

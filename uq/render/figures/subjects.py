@@ -7,9 +7,12 @@ from uq.assess.answer.compared_indices import method_for
 from uq.assess.answer.events import events_of
 from uq.assess.answer.quantities import by_importance
 from uq.assess.findings import Findings
+from uq.assess.life_fit import fits_of
 from uq.assess.row_inputs import independent_inputs
 from uq.assess.sampled_laws import laws_and_values
 from uq.assess.sensitivities import TargetIndices, methods
+from uq.assess.statistic import Context
+from uq.assess.statistics.causes import refusal
 from uq.assess.summary import REGIME
 from uq.assess.targets import number_of, split_name, transformed_if_heavy
 from uq.errors import InputError
@@ -168,6 +171,21 @@ def is_lifetime(findings: Findings, name: str) -> bool:
 def is_no_lifetime(findings: Findings, name: str) -> bool:
     """Return whether the output is not a lifetime."""
     return not is_lifetime(findings, name)
+
+
+def has_causes(findings: Findings, name: str) -> bool:
+    """Return whether the lives of the output have causes with an estimate of their incidence."""
+    element = findings.rows.named_elements(name)[0]
+    context = Context(findings.rows, findings.result.analysis)
+    return element.causes is not None and not refusal(element, context)
+
+
+def has_weibull_law(findings: Findings, name: str) -> bool:
+    """Return whether the output is a lifetime to which a Weibull law can be fitted."""
+    if not is_lifetime(findings, name) or findings.result.has_weights:
+        return False
+    element = findings.rows.named_elements(name)[0]
+    return not fits_of(element, True, True, ("weibull",))["weibull"].refused
 
 
 def in_regimes(findings: Findings, name: str) -> bool:

@@ -2,7 +2,6 @@
 
 Reading order; each part imports only those above it:
 
-    citations  summary and references of an estimator, from its docstring
     verbs      the verbs whose numbers have keys. To add one
     trace      origin of one number of a result, the rows behind it, and its recomputation
 """

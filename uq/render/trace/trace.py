@@ -1,8 +1,11 @@
 """Origin of one number of a result, the rows behind it, and its recomputation."""
 
+import inspect
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,13 +13,62 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from uq.errors import InputError
-from uq.render.trace.citations import Citation, cited
+from uq.indices.methods import METHODS, indices_of
 from uq.render.trace.verbs import VERBS
 from uq.result.elements import flags
 from uq.result.result import AnyResult, Result
 from uq.study.provenance import provenance
 from uq.text.keys import key_of, no_such_key, numbers_in, paths_of_numbers, taken_apart
 from uq.text.numbers import counted
+
+
+class Citation(NamedTuple):
+    """Citation of an estimator.
+
+    Attributes
+    ----------
+    does : str
+        One-line summary.
+    code : str
+        Function that computes it: ``uq.stats.order_statistics.quantile``.
+    sources : tuple of str
+        References of its docstring.
+    """
+
+    does: str
+    code: str = ""
+    sources: tuple[str, ...] = ()
+
+
+def cited(function: Callable[..., Any]) -> Citation:
+    """Return the summary and references in the docstring of an estimator or of its method."""
+    if isinstance(function, partial) and function.func is indices_of:
+        return _of_index(*function.args)
+    while isinstance(function, partial):
+        function = function.func
+    docstring = inspect.getdoc(function) or ""
+    first = _joined(docstring.split("\n\n")[0])
+    section = re.search(
+        r"^References\n-+\n(.*?)(?=^\w+\n-+$|\Z)", docstring, re.DOTALL | re.MULTILINE
+    )
+    entries = re.split(r"^\.\. (?=\[\d+\] )", section[1], flags=re.MULTILINE) if section else []
+    code = f"{function.__module__}.{getattr(function, '__qualname__', '')}"
+    return Citation(first.removesuffix("."), code, tuple(filter(None, map(_joined, entries))))
+
+
+def _of_index(method: str, key: str) -> Citation:
+    """Return question, estimator and references of a method; with key "", of no kind of index."""
+    estimator = METHODS[method]
+    kinds = [f" ({kind.words})" for kind in estimator.kinds if kind.key == key]
+    code = f"uq.indices.methods.METHODS['{method}']"
+    references = [estimator.source, estimator.intervals and f"intervals: {estimator.intervals}"]
+    sources = (*filter(None, references), *cited(estimator.estimate).sources)
+    return Citation(f"{estimator.question}{''.join(kinds)}", code, sources)
+
+
+def _joined(text: str) -> str:
+    """Return text on one line, with ``[1]`` for the mark ``[1]_``."""
+    return re.sub(r"(\[\d+\])_", r"\1", " ".join(text.split()))
 
 
 class Run(NamedTuple):

@@ -37,7 +37,7 @@ from uq.render.html.outcomes import (
 )
 from uq.render.html.page import laid_out
 from uq.render.html.pictures import about, pictures
-from uq.render.trace.citations import cited
+from uq.render.trace.trace import cited
 from uq.result.nesting import size_in_words
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS
