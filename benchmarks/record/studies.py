@@ -19,6 +19,7 @@ SAMPLES = {  # of each replicate
     "mole-outcome": 16,
     "mole-progression": 100,
     "mole-ten-metres": 16,
+    "screen-inspection": 64,
     "tube-antivibration-bar": 2,
     "vibrator-feed": 16,
     "vibrator-run-up": 4,

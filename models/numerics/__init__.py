@@ -10,6 +10,7 @@ Reading order; a module imports only those above it:
     blocks          lanes: systems that advance together, and their memory
     sincos          sine and cosine without branches
     elementary      elementary functions of arrays, with the same bits on every processor
+    uniforms        random numbers by seed and number
     fourier         the discrete Fourier transform, with the same bits on every processor
     linear          many small linear systems
     symmetric       eigenvalues of many symmetric matrices

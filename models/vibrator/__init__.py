@@ -12,11 +12,14 @@ Reading order; each part imports only those above it:
     exact         one propagator: any machine, one at a time
     lanes         the other: sixteen rigid machines at a time
     start         from standstill to the steady state
+    run_down      from synchronous running to rest
+    service       years of service: time to disphasing
     batch         from rows of a study to outputs
     trajectory    one labelled run
     paper         the paper's claims compared with the model
 """
 
+import math
 from typing import Any
 
 from models.vibrator.parameters import OUTPUTS, Params, Settings, coordinates
@@ -52,8 +55,13 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
-    dimensions={"instant": ("s", "time since the motors were switched on")},
+    dimensions={
+        "instant": ("s", "time since the motors were switched on"),
+        "run_down_phase": ("rad", "phase of vibrator 1 at which the motors are switched off"),
+    },
     cheap={"theory_disphasing_angle": _theory_batch},
+    random=True,
+    random_unless={"spring_life": math.inf},
     block=256,
     references=(
         "J. Michalczyk, G. Cieplok, Disturbances in self-synchronisation of vibrators in vibratory "

@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.lanes.machines import follows
+from models.vibrator.lanes.machines import follows, is_rigid
 from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.run_down import run_downs
+from models.vibrator.service.life import lives
 from models.vibrator.start import exact, fast
 from models.vibrator.start.regimes import Outcome, wrapped
 from models.vibrator.theory import averaged
@@ -24,24 +26,26 @@ def batch(
     x : ndarray, shape (n, d)
         Parameters in the order of `Params`.
     seed : ndarray of uint64, shape (n,)
-        Not used: the machine is deterministic.
+        Of the times at which springs break; all else is deterministic.
     settings : Settings
 
     Returns
     -------
     outputs : dict of str to ndarray, shape (n,)
-        Those of `models.vibrator.parameters.OUTPUTS`, and ``synchronisation_time_censored``.
+        Those of `models.vibrator.parameters.OUTPUTS`, with ``*_censored`` beside each lifetime.
     status : ndarray of int8, shape (n,)
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
-    quick = follows(p, settings) & (settings.propagator == "fast")
+    in_lanes = settings.propagator == "fast"
+    quick, rigid = follows(p, settings) & in_lanes, is_rigid(p, settings) & in_lanes
     outcome, status = (
         Outcome.nothing(len(x), len(settings.instants)),
         np.full(len(x), Status.OK, np.int8),
     )
     _run(fast.outcomes, p, np.flatnonzero(quick), settings, outcome, status)
     # The exact propagator also follows machines too stiff for fixed steps.
-    slow = ~quick | (status == Status.NON_FINITE)
+    stiff = status == Status.NON_FINITE
+    slow, rigid = ~quick | stiff, rigid & ~stiff
     _run(exact.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
     outputs = {
         "disphasing_angle": outcome.disphasing,
@@ -58,10 +62,20 @@ def batch(
         "max_excursion": outcome.max_excursion,
         "regime": outcome.regime,
     }
+    seen = outcome.regime, outcome.disphasing, status == Status.OUT_OF_BUDGET
+    life = lives(p, seed, *seen, rigid, settings)
+    outputs |= {
+        "time_to_disphasing": life.time,
+        "time_to_disphasing_censored": life.censored,
+        "time_to_disphasing_error": life.error,
+        "time_to_disphasing_cause": life.cause,
+    }
     if settings.instants:
         angle, speed_1, speed_2 = np.moveaxis(outcome.on_the_way, 2, 0)
         outputs["run_up_angle"] = wrapped(angle)
         outputs["run_up_speed_1"], outputs["run_up_speed_2"] = speed_1, speed_2
+    if settings.run_down_phases:
+        outputs |= run_downs(p, *seen[:2], outcome.speed, rigid, settings)
     return outputs, status
 
 

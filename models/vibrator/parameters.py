@@ -24,6 +24,8 @@ BOLTED, IN_BODY = (
 )
 BEARING = "assumed: friction coefficient times half the bore, 0 to 3e-4 likely"
 REGIMES = ("locked-0", "locked-pi", "asynchronous", "captured", "one-stalled")
+CAUSES = ("angle", "lost-synchronisation", "spring-break", "beyond-horizon", "never")
+NO_AGEING = "assumed: no ageing; 2e7 to 2e8, 5,000 to 50,000 hours, likely"
 
 
 # fmt: off
@@ -130,6 +132,37 @@ class Params(NamedTuple):
     gravity: Annotated[float, Parameter(
         "g", "m s-2", "gravity on the unbalanced masses; 9.81 matters while the motors start",
         (0.0, 30.0), f"assumed: none, as in (13) to (23) of {PAPER}")] = 0.0
+    voltage_factor: Annotated[float, Parameter(
+        "u", "1", "voltage of the supply over its rated value; torques go with its square",
+        (0.03, 30.0), "assumed: rated voltage")] = 1.0
+    support_imbalance: Annotated[float, Parameter(
+        "kappa", "1",
+        "stiffness and damping of the right support less those of the left, over their sum",
+        (-0.95, 0.95), "assumed: equal supports")] = 0.0
+    ramp_time: Annotated[float, Parameter(
+        "t_r", "s", "time in which an inverter raises the synchronous speeds from 0", (0.0, 3600.0),
+        "assumed: switched on directly")] = 0.0
+    torque_lag: Annotated[float, Parameter(
+        "tau_e", "s", "time constant by which motor torques follow (22)", (0.0, 10.0),
+        "assumed: at once, as in the paper")] = 0.0
+    ageing_time_1: Annotated[float, Parameter(
+        "t_1", "s", "time in which the friction of bearing 1 doubles", (1e3, inf),
+        NO_AGEING)] = inf
+    ageing_time_2: Annotated[float, Parameter(
+        "t_2", "s", "time in which the friction of bearing 2 doubles", (1e3, inf),
+        NO_AGEING)] = inf
+    ageing_exponent: Annotated[float, Parameter(
+        "nu", "1", "exponent of time by which the friction of bearings grows", (0.03, 30.0),
+        "assumed: 1 to 3 likely")] = 1.0
+    support_hardening: Annotated[float, Parameter(
+        "c", "1", "relative growth of the supports' stiffness per decade of time over 1000 hours",
+        (0.0, 1.0), "assumed: none; 0 to 0.15 likely of rubber")] = 0.0
+    spring_life: Annotated[float, Parameter(
+        "eta_s", "s", "Weibull scale of the times at which springs break", (1e3, inf),
+        "assumed: springs do not break")] = inf
+    spring_shape: Annotated[float, Parameter(
+        "b_s", "1", "Weibull shape of these times", (0.06, 60.0),
+        "assumed: fatigue, 1.5 to 4 likely")] = 2.0
 # fmt: on
 
 
@@ -176,6 +209,30 @@ class Settings:
             bounds=(0, 1000),
         ),
     ] = 0
+    angle_limit: Annotated[
+        float,
+        Setting("disphasing angle beyond which a machine has failed", "rad", bounds=(0.0, pi)),
+    ] = pi / 15
+    springs: Annotated[
+        int, Setting("springs at each side, which break one by one", bounds=(1, 100))
+    ] = 4
+    horizon: Annotated[
+        float,
+        Setting("times to disphasing beyond it are censored", "s", bounds=(1.0, 1e12)),
+    ] = 3.15576e9
+    run_down_phases: Annotated[
+        tuple[float, ...],
+        Setting(
+            "phases of vibrator 1, from the working axis, at which synchronous motors are switched"
+            " off; the run-down is then reported",
+            "rad",
+            bounds=(0.0, 2 * pi),
+            optional=True,
+        ),
+    ] = ()
+    run_down: Annotated[
+        float, Setting("longest run-down simulated", "s", bounds=(1.0, 36000.0))
+    ] = 1000.0
     body_points: Annotated[
         tuple[tuple[float, float], ...],
         Setting(
@@ -192,11 +249,14 @@ class Settings:
             raise ValueError("instants must be a list of increasing numbers")
         if instants and instants[-1] > self.run_up:
             raise ValueError("instants must not lie beyond the run_up")
+        phases = self.run_down_phases
+        if any(b <= a for a, b in zip(phases, phases[1:], strict=False)):
+            raise ValueError("run_down_phases must be a list of increasing numbers")
 
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
     """Return the coordinates of the outputs' dimensions."""
-    return {"instant": settings.instants}
+    return {"instant": settings.instants, "run_down_phase": settings.run_down_phases}
 
 
 OUTPUTS: Mapping[str, Output] = {
@@ -241,5 +301,32 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "regime": Output(
         "1", "type of steady state reached from the start", "category", categories=REGIMES
+    ),
+    "run_down_excursion": Output(
+        "m",
+        "largest displacement of C after the motors are switched off at the phase",
+        dims=("run_down_phase",),
+        may_be_undefined=True,
+    ),
+    "run_down_time": Output(
+        "s",
+        "time until both vibrators turn slower than 0.05 of their synchronous speed",
+        "lifetime",
+        ("run_down_phase",),
+        may_be_undefined=True,
+        success="the machine has run down",
+        never_known_at_once=False,  # without friction and damping it never comes to rest
+    ),
+    "time_to_disphasing": Output(
+        "s",
+        "time in service until the disphasing angle exceeds the limit or synchronisation is lost",
+        "lifetime",
+        never_known_at_once=False,  # after the horizon, supports may harden without consequence
+    ),
+    "time_to_disphasing_error": Output(
+        "s", "numerical error of the time to disphasing", may_be_undefined=True
+    ),
+    "time_to_disphasing_cause": Output(
+        "1", "why the time to disphasing ends", "category", categories=CAUSES
     ),
 }

@@ -75,7 +75,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         "displacement_left": ("m", "left deck end along xi", left),
         "displacement_right": ("m", "right deck end along xi", right),
     }
-    if len(q) == general.DEGREES:
+    if len(q) >= general.DEGREES:
         quantities |= {
             "mount_displacement": ("m", "motor set on its mount", q[5]),
             "mount_rotation": ("rad", "rotation on the mount", q[6]),

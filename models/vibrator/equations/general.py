@@ -95,8 +95,12 @@ def _supports(m, pose, state):
     # The supports move by different amounts.
     more_x = r.stiffness_x * shrunk - r.damping_x * pose.sin * va
     more_y = r.stiffness_y * turned + r.damping_y * pose.cos * va
-    moment = h * (pose.cos * force_x + pose.sin * force_y)
-    return force_x, force_y, moment + half * half * (pose.sin * more_x - pose.cos * more_y)
+    both_x, both_y = force_x - r.support_lever * more_x, force_y - r.support_lever * more_y
+    moment = h * (pose.cos * both_x + pose.sin * both_y)
+    moment += half * half * (pose.sin * more_x - pose.cos * more_y)
+    # The support on the right carries more of the forces common to both, by the imbalance.
+    moment += r.support_lever * (pose.cos * force_y - pose.sin * force_x)
+    return both_x, both_y, moment
 
 
 @kernel

@@ -45,6 +45,8 @@ class Rigid(NamedTuple):
         h, l [m]
     gravity : float
         g [m s-2]
+    support_lever : float
+        l (k_R - k_L)/(k_R + k_L), by which the support on the right carries more [m]
     """
 
     mass: Any
@@ -75,6 +77,7 @@ class Rigid(NamedTuple):
     support_offset: Any
     half_spacing: Any
     gravity: Any
+    support_lever: Any
 
 
 class Motion(NamedTuple):
@@ -139,7 +142,10 @@ def accelerations(m, c_1, s_1, c_2, s_2, x, y, alpha, vx, vy, va, w_1, w_2):
     p_x = fma(m.damping_x, fma(m.support_offset, va, vx), p_x)
     p_y = fma(m.stiffness_y, y, m.damping_y * vy)
     p_a = fma(m.stiffness_y, alpha, m.damping_y * va)
-    p_a = fma(p_a * m.half_spacing, m.half_spacing, p_x * m.support_offset)
+    turned, raised = p_a, p_y
+    p_y = fma(m.support_lever, turned, raised)
+    p_a = fma(turned * m.half_spacing, m.half_spacing, p_x * m.support_offset)
+    p_a = fma(m.support_lever, raised, p_a)
     n_1, n_2 = m.unbalance_1 * w_1 * w_1, m.unbalance_2 * w_2 * w_2
     t_1, t_2 = r_1 * q_1, r_2 * q_2
     k_x = fma(-t_2, s_2, fma(n_2, c_2, fma(n_1, c_1, t_1 * s_1))) - p_x

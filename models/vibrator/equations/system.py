@@ -42,6 +42,10 @@ class System(NamedTuple):
         [kg, m s-2, m]
     exact : float
         1 for exact kinematics, 0 for the geometry at alpha = 0.
+    ramp_time, ramp_left : float
+        In which an inverter raises the synchronous speeds; how much of it is left [s].
+    torque_lag : float
+        Time constant of the motor torques [s].
     """
 
     rigid: Rigid
@@ -65,6 +69,9 @@ class System(NamedTuple):
     feed_gravity: Any
     feed_position: Any
     exact: Any
+    ramp_time: Any
+    ramp_left: Any
+    torque_lag: Any
 
     def row(self, i: int) -> "System":
         """Return one of n machines, its fields floats."""
@@ -97,7 +104,7 @@ def rigid_machines(p: Rows) -> Rigid:
     """
     motors, m = motor_set(p), p.unbalanced_mass
     (x_1, y_1), (x_2, y_2), (x, y) = _shafts(p, motors)
-    sprung = p.body_mass + 2 * m
+    sprung, power = p.body_mass + 2 * m, p.voltage_factor * p.voltage_factor
     slip_1 = p.synchronous_speed_1 - p.breakdown_speed_1
     slip_2 = p.synchronous_speed_2 - p.breakdown_speed_2
     return Rigid(
@@ -114,8 +121,8 @@ def rigid_machines(p: Rows) -> Rigid:
         unbalance_2=p.unbalance_2,
         mobility_1=1 / (p.rotor_inertia + p.unbalance_1**2 / m),
         mobility_2=1 / (p.rotor_inertia + p.unbalance_2**2 / m),
-        torque_1=2 * p.overload_capacity * p.rated_torque_1 * slip_1,
-        torque_2=2 * p.overload_capacity * p.rated_torque_2 * slip_2,
+        torque_1=2 * p.overload_capacity * p.rated_torque_1 * slip_1 * power,
+        torque_2=2 * p.overload_capacity * p.rated_torque_2 * slip_2 * power,
         synchronous_speed_1=p.synchronous_speed_1,
         synchronous_speed_2=p.synchronous_speed_2,
         slip_1=slip_1,
@@ -129,6 +136,7 @@ def rigid_machines(p: Rows) -> Rigid:
         support_offset=p.support_offset,
         half_spacing=p.support_half_spacing,
         gravity=p.gravity,
+        support_lever=p.support_imbalance * p.support_half_spacing,
     )
 
 
@@ -174,6 +182,9 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         feed_gravity=_gravity(p),
         feed_position=p.feed_position,
         exact=np.full_like(p.unbalanced_mass, kinematics == "exact"),
+        ramp_time=p.ramp_time,
+        ramp_left=p.ramp_time,
+        torque_lag=p.torque_lag,
     )
 
 

@@ -62,8 +62,10 @@ def slowest_period(m: Rigid) -> Any:
     Returns
     -------
     float or ndarray, shape (n,)
-        As if its three degrees of freedom were uncoupled.
+        As if its three degrees of freedom were uncoupled; unequal supports, which couple two of
+        them, lengthen it by at most the factor that is added.
     """
     turning = m.stiffness_x * m.support_offset**2 + m.stiffness_y * m.half_spacing**2
     ways = (m.mass / m.stiffness_x, m.mass / m.stiffness_y, m.inertia / turning)
-    return 2 * np.pi * np.sqrt(np.maximum.reduce(ways))
+    even = 1 - np.abs(m.support_lever) / m.half_spacing
+    return 2 * np.pi * np.sqrt(np.maximum.reduce(ways) / even)

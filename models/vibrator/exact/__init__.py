@@ -2,6 +2,8 @@
 
 Reading order; a module imports only those above it:
 
+    ramp          synchronous speeds that an inverter raises
+    lag           motor torques that follow with a delay
     propagator    one machine, started and followed
     budgeted      a machine run repeatedly within a budget of steps
     measures      measures of a sampled motion

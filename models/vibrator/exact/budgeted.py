@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.numerics.dop853 import Outcome
-from models.vibrator.equations import general, rigid_motion
+from models.vibrator.equations import general
 from models.vibrator.equations.system import System, system
 from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params
@@ -38,7 +38,7 @@ class Machine:
     @property
     def is_extended(self) -> bool:
         """Whether the state belongs to `models.vibrator.equations.general`."""
-        return self.degrees == general.DEGREES
+        return self.degrees >= general.DEGREES
 
     @property
     def degrees(self) -> int:
@@ -52,9 +52,9 @@ class Machine:
     def free(self, riding: bool) -> NDArray[np.intp]:
         """Return the components of the state that can vary at fixed psi_1."""
         m = self.system
-        rates = [True, True, True, True, True, bool(m.slides), bool(m.rocks), not riding]
+        rates = [True] * 5 + [bool(m.slides), bool(m.rocks), not riding, True, True]
         rates = rates[: self.degrees]
-        places = rates.copy()
+        places = rates[: general.DEGREES] + [False] * (self.degrees - general.DEGREES)
         places[PSI_1] = False
         return np.flatnonzero(places + rates)
 
@@ -65,8 +65,15 @@ class Machine:
         tolerance: float,
         turns: float = math.inf,
         times: ArrayLike = (),
+        begin: float = math.inf,
     ) -> tuple[Outcome, NDArray[np.float64]]:
-        """Advance `state` in place by a duration or by turns of vibrator 1; return samples, too."""
+        """Advance `state` in place by a duration or by turns of vibrator 1; return samples, too.
+
+        The run begins that long after the motors were switched on; by default after any ramp.
+        """
+        ramp_left = max(self.system.ramp_time - begin, 0.0)
+        if ramp_left != self.system.ramp_left:
+            self.system = self.system._replace(ramp_left=ramp_left)
         times = np.ascontiguousarray(times, float)
         samples = np.full((len(times), len(state)), np.nan)
         ended = propagator.runner(self.system, self.degrees)(
@@ -95,5 +102,4 @@ def prepare(params: Params, kinematics: str, budget: int) -> Machine:
         Steps that may be tried.
     """
     m = system(params, kinematics)
-    degrees = general.DEGREES if propagator.is_extended(m) else rigid_motion.DEGREES
-    return Machine(params, m, propagator.scales_of(m, degrees), budget)
+    return Machine(params, m, propagator.scales_of(m, propagator.degrees_of(m)), budget)

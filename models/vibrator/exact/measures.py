@@ -137,6 +137,10 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
         return _half_range(shift, rate, interval)
 
     duration = interval * (len(samples) - 1)
+    torque_1 = kloss(m.rigid.torque_1, m.rigid.slip_1, m.rigid.synchronous_speed_1 - w_1)
+    torque_2 = kloss(m.rigid.torque_2, m.rigid.slip_2, m.rigid.synchronous_speed_2 - w_2)
+    if m.torque_lag:
+        torque_1, torque_2 = samples.T[-2:]
     return Measures(
         _mean(psi_1 - psi_2),
         _half_range(alpha, spin, interval),
@@ -144,8 +148,8 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
         stroke(m.rigid.half_spacing),
         float(psi_1[-1] - psi_1[0]) / duration,
         float(psi_2[-1] - psi_2[0]) / duration,
-        _mean(w_1 * kloss(m.rigid.torque_1, m.rigid.slip_1, m.rigid.synchronous_speed_1 - w_1)),
-        _mean(w_2 * kloss(m.rigid.torque_2, m.rigid.slip_2, m.rigid.synchronous_speed_2 - w_2)),
+        _mean(w_1 * torque_1),
+        _mean(w_2 * torque_2),
     )
 
 

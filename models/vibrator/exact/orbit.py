@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from models.numerics.dop853 import GUARDED
 from models.numerics.linear import solve
 from models.numerics.multipliers import log_radius
+from models.vibrator.exact import lag
 from models.vibrator.exact.budgeted import PSI_1, PSI_2, Machine
 from models.vibrator.exact.measures import Measures, first_harmonic, measure
 from models.vibrator.theory import averaged
@@ -73,6 +74,8 @@ def proposal(machine: Machine) -> NDArray[np.float64] | None:
         state[i], state[machine.degrees + i] = amplitude[0].real, -w * amplitude[0].imag
     state[PSI_2] = -guess.angle[0]
     state[machine.degrees + PSI_1] = state[machine.degrees + PSI_2] = w
+    if machine.system.torque_lag:
+        state[-2:] = lag.start_torques(machine.system, w)
     return state
 
 

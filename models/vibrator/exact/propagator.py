@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.numerics.dop853 import GUARDED, Outcome, integrator
-from models.numerics.jit import kernel
+from models.numerics.jit import kernel, spliced
 from models.vibrator.equations import general, rigid_motion
 from models.vibrator.equations.system import System
+from models.vibrator.exact import lag
+from models.vibrator.exact.ramp import ramped
 from models.vibrator.parameters import Params
 
 STEPS_PER_TURN = 400
@@ -88,9 +90,34 @@ def _fed_guards(t, y, task, guard):
     guard[_FEED] = general.support_of_feed(task.system, y) if task.riding else y[7]
 
 
+@kernel
+def _rigid_rates_in_ramp(t, y, task, dy):
+    for i in range(rigid_motion.DEGREES):
+        dy[i] = y[rigid_motion.DEGREES + i]
+    rigid_motion.acceleration(ramped(task.system, t).rigid, y, dy[rigid_motion.DEGREES :])
+
+
+@kernel
+def _extended_rates_in_ramp(t, y, task, dy):
+    for i in range(general.DEGREES):
+        dy[i] = y[general.DEGREES + i]
+    motion = general.accelerations(ramped(task.system, t), task.riding, y)
+    for i in range(general.DEGREES):
+        dy[general.DEGREES + i] = motion[i]
+
+
+@kernel
+def _fed_guards_in_ramp(t, y, task, guard):
+    guard[_TURNED] = task.last_angle - y[3]
+    guard[_FEED] = general.support_of_feed(ramped(task.system, t), y) if task.riding else y[7]
+
+
 _integrate_rigid = integrator(_rigid_rates, _turned, 1, looks=1)
 _integrate_empty = integrator(_extended_rates, _turned, 1, looks=1)
 _integrate_fed = integrator(_extended_rates, _fed_guards, 2)
+_integrate_rigid_in_ramp = integrator(_rigid_rates_in_ramp, _turned, 1, looks=1)
+_integrate_empty_in_ramp = integrator(_extended_rates_in_ramp, _turned, 1, looks=1)
+_integrate_fed_in_ramp = integrator(_extended_rates_in_ramp, _fed_guards_in_ramp, 2)
 
 
 @kernel
@@ -107,14 +134,13 @@ def run_empty(system, state, last_angle, end, absolute, budget, times, samples):
     return _integrate_empty(0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples)
 
 
-@kernel
-def run_fed(system, state, last_angle, end, absolute, budget, times, samples):
-    """Integrate the extended machine through all flights of the feed; see `run_rigid`."""
+@spliced
+def _through_flights(integrate, system, state, last_angle, end, absolute, budget, times, samples):
     riding = state[7] == 0 and state[general.DEGREES + 7] == 0
     time = step = 0.0
     steps = sampled = 0
     while True:
-        ended = _integrate_fed(
+        ended = integrate(
             time,
             end,
             state,
@@ -139,16 +165,63 @@ def run_fed(system, state, last_angle, end, absolute, budget, times, samples):
     return Outcome(ended.status, time, ended.guard, step, steps, sampled)
 
 
+@kernel
+def run_fed(system, state, last_angle, end, absolute, budget, times, samples):
+    """Integrate the extended machine through all flights of the feed; see `run_rigid`."""
+    return _through_flights(
+        _integrate_fed, system, state, last_angle, end, absolute, budget, times, samples
+    )
+
+
+@kernel
+def run_rigid_in_ramp(system, state, last_angle, end, absolute, budget, times, samples):
+    """Integrate the rigid machine while synchronous speeds rise; see `run_rigid`."""
+    task = Task(system, last_angle, True)
+    return _integrate_rigid_in_ramp(
+        0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples
+    )
+
+
+@kernel
+def run_empty_in_ramp(system, state, last_angle, end, absolute, budget, times, samples):
+    """Integrate the extended machine without feed while synchronous speeds rise."""
+    task = Task(system, last_angle, True)
+    return _integrate_empty_in_ramp(
+        0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples
+    )
+
+
+@kernel
+def run_fed_in_ramp(system, state, last_angle, end, absolute, budget, times, samples):
+    """Integrate the machine through all flights of the feed while synchronous speeds rise."""
+    return _through_flights(
+        _integrate_fed_in_ramp, system, state, last_angle, end, absolute, budget, times, samples
+    )
+
+
 def is_extended(system: System) -> bool:
     """Whether a machine needs the equations of `models.vibrator.equations.general`."""
-    return bool(system.exact or system.slides or system.rocks or system.feed_mass)
+    moves = system.exact or system.slides or system.rocks or system.feed_mass
+    return bool(moves or system.torque_lag)
+
+
+def degrees_of(system: System) -> int:
+    """Return the number of degrees of freedom, half the length of a state."""
+    if system.torque_lag:
+        return lag.DEGREES
+    return general.DEGREES if is_extended(system) else rigid_motion.DEGREES
 
 
 def runner(system: System, degrees: int) -> Callable[..., Outcome]:
     """Return the kernel for this many degrees of freedom: `run_rigid` or one with its arguments."""
+    in_ramp = system.ramp_left > 0
+    if degrees == lag.DEGREES:
+        return lag.run_lagging
     if degrees == rigid_motion.DEGREES:
-        return run_rigid
-    return run_fed if system.feed_mass else run_empty
+        return run_rigid_in_ramp if in_ramp else run_rigid
+    if system.feed_mass:
+        return run_fed_in_ramp if in_ramp else run_fed
+    return run_empty_in_ramp if in_ramp else run_empty
 
 
 def start(params: Params, system: System) -> NDArray[np.float64]:
@@ -163,11 +236,14 @@ def start(params: Params, system: System) -> NDArray[np.float64]:
 
     Returns
     -------
-    ndarray, shape (10,) or (16,)
-        Of `models.vibrator.equations.rigid_motion` or of `models.vibrator.equations.general`.
+    ndarray, shape (10,), (16,) or (20,)
+        Of `models.vibrator.equations.rigid_motion`, of `models.vibrator.equations.general`, or of
+        `models.vibrator.exact.lag`.
     """
     row = Params._make(np.array([value]) for value in params)
     (state,) = rigid_motion.initial_state(row)
+    if system.torque_lag:
+        return lag.extend(general.extend(state))
     return general.extend(state) if is_extended(system) else state
 
 
@@ -184,8 +260,8 @@ def propagate(
     Parameters
     ----------
     system : System
-    state : array_like, shape (10,) or (16,)
-        At time 0; the longer one for the extended machine.
+    state : array_like, shape (10,), (16,) or (20,)
+        At time 0; see `start`.
     duration : float
         [s]
     tolerance : float
@@ -223,8 +299,17 @@ def _speed(m: System) -> float:
 
 
 def scales_of(m: System, degrees: int) -> NDArray[np.float64]:
-    """Return the scales of x, y, alpha, psi_1, psi_2, u, chi and height, then of their rates."""
+    """Return the scales of x, y, alpha, psi_1, psi_2, u, chi and height, then of their rates.
+
+    With torques that lag, those of their degrees of freedom, too.
+    """
     shift = (m.rigid.unbalance_1 + m.rigid.unbalance_2) / m.rigid.mass
     turn = shift / math.sqrt(m.rigid.inertia / m.rigid.mass)
-    sizes = np.array([shift, shift, turn, 1.0, 1.0, shift, turn, shift])[:degrees]
-    return np.concatenate([sizes, sizes * _speed(m)])
+    sizes = np.array([shift, shift, turn, 1.0, 1.0, shift, turn, shift, 1.0, 1.0])[:degrees]
+    rates = sizes * _speed(m)
+    if degrees == lag.DEGREES:
+        rates[general.DEGREES :] = (
+            m.rigid.torque_1 / m.rigid.slip_1,
+            m.rigid.torque_2 / m.rigid.slip_2,
+        )
+    return np.concatenate([sizes, rates])

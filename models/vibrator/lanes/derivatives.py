@@ -1,8 +1,8 @@
 """How the accelerations of sixteen rigid machines change with their states.
 
-The body is described by x, y and alpha at S, the centre of the supports, where each support force
-depends on one of them alone. With e_i, n_i of `models.vibrator.equations.rigid` about S, a change
-of the state changes the accelerations by
+The body is described by x, y and alpha at S, the centre of the supports' stiffness, where each
+support force depends on one of them alone. With e_i, n_i of `models.vibrator.equations.rigid` about
+S, a change of the state changes the accelerations by
 
     da = B dF,    dpsi_1'' = dq_1 - r_1 e_1 . da,    dpsi_2'' = dq_2 + r_2 e_2 . da,
 
@@ -75,7 +75,7 @@ def support(c, h, out):
     """
     for lane in range(LANES):
         m, step = machine(c, lane), h[lane]
-        arm = m.half_spacing * m.half_spacing
+        arm = fma(-m.support_lever, m.support_lever, m.half_spacing * m.half_spacing)
         out[_STIFF_X + lane] = -step * step * m.stiffness_x
         out[_STIFF_Y + lane] = -step * step * m.stiffness_y
         out[_STIFF_A + lane] = -step * step * m.stiffness_y * arm
@@ -100,10 +100,11 @@ def linearise(c, w, out):
         m, step = machine(c, lane), w[AT.step + lane]
         c_1, s_1, c_2, s_2 = w[C_1 + lane], w[S_1 + lane], w[C_2 + lane], w[S_2 + lane]
         va, w_1, w_2 = w[_VA + lane], w[_W_1 + lane], w[_W_2 + lane]
-        up = m.support_offset
+        up, right = m.support_offset, m.support_lever
+        x_1, x_2 = m.shaft_x_1 - right, m.shaft_x_2 - right
         y_1, y_2 = m.shaft_y_1 + up, m.shaft_y_2 + up
-        g_1, h_1 = fma(m.shaft_x_1, c_1, y_1 * s_1), fma(m.shaft_x_1, s_1, -y_1 * c_1)
-        g_2, h_2 = fma(m.shaft_x_2, c_2, y_2 * s_2), fma(m.shaft_x_2, s_2, -y_2 * c_2)
+        g_1, h_1 = fma(x_1, c_1, y_1 * s_1), fma(x_1, s_1, -y_1 * c_1)
+        g_2, h_2 = fma(x_2, c_2, y_2 * s_2), fma(x_2, s_2, -y_2 * c_2)
         u_1, u_2 = m.unbalance_1, m.unbalance_2
         r_1, r_2 = u_1 * m.mobility_1, u_2 * m.mobility_2
         # The inertia of the body less what the rotors give way, and its cofactors.
@@ -112,8 +113,9 @@ def linearise(c, w, out):
         s_xy = fma(f_1 * s_1, c_1, f_2 * s_2 * c_2)
         s_yy = fma(-f_2 * c_2, c_2, fma(-f_1 * c_1, c_1, m.mass))
         s_xa = fma(-up, m.mass, fma(f_1 * s_1, g_1, f_2 * s_2 * g_2) - m.moment_y)
-        s_ya = fma(-f_2 * c_2, g_2, fma(-f_1 * c_1, g_1, m.moment_x))
+        s_ya = fma(-f_2 * c_2, g_2, fma(-f_1 * c_1, g_1, fma(-right, m.mass, m.moment_x)))
         s_aa = fma(up, fma(up, m.mass, 2 * m.moment_y), m.inertia)
+        s_aa = fma(right, fma(right, m.mass, -2 * m.moment_x), s_aa)
         s_aa = fma(-f_2 * g_2, g_2, fma(-f_1 * g_1, g_1, s_aa))
         b_xx = fma(s_yy, s_aa, -s_ya * s_ya)
         b_xy = fma(s_xa, s_ya, -s_xy * s_aa)
@@ -137,7 +139,7 @@ def linearise(c, w, out):
         # The body's acceleration along n_i turns the rotor; gravity acts like one upwards.
         aa = step * w[_ALPHA + lane]
         ax = fma(up, aa, step * w[_X + lane])
-        ay = fma(step * step, m.gravity, step * w[_Y + lane])
+        ay = fma(right, aa, fma(step * step, m.gravity, step * w[_Y + lane]))
         own_1 = r_1 * fma(h_1, aa, fma(c_1, ax, s_1 * ay))
         own_2 = r_2 * fma(h_2, aa, fma(c_2, ax, s_2 * ay))
         v_1, v_2 = step * w_1, step * w_2

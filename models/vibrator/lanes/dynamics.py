@@ -25,7 +25,7 @@ _VX, _VY, _VA, _W_1, _W_2 = (_AT.speed + i * LANES for i in range(DEGREES))
 _AX, _AY, _AA, _A_1, _A_2 = (_AT.rise + i * LANES for i in range(DEGREES))
 _PASSED = 9  # numbers that one loop passes to the next
 C_1, S_1, C_2, S_2, _F_X, _F_Y, _F_A, _Q_1, _Q_2 = (_AT.end + i * LANES for i in range(_PASSED))
-_CONSTANTS = 39
+_CONSTANTS = 40
 (
     _ANGLE,
     _X_1,
@@ -66,6 +66,7 @@ _CONSTANTS = 39
     _PER_RADIUS,
     _CENTRE_X,
     _CENTRE_Y,
+    _LEVER,
 ) = (_AT.end + (_PASSED + i) * LANES for i in range(_CONSTANTS))
 END = _AT.end + (_PASSED + _CONSTANTS) * LANES
 
@@ -110,11 +111,15 @@ def prepare(m, h, w, lane):
     w[_STIFF_X + lane] = -h * m.stiffness_x / m.mass
     w[_DAMP_X + lane] = -h * m.damping_x / m.mass
     w[_STIFF_Y + lane], w[_DAMP_Y + lane] = stiff, damp
-    w[_STIFF_A + lane] = stiff * arm * arm * per_radius
-    w[_DAMP_A + lane] = damp * arm * arm * per_radius
+    # about the centre of both supports, which unequal ones shift
+    lever = m.support_lever
+    share = 1 - (lever / arm) * (lever / arm)
+    w[_STIFF_A + lane] = stiff * arm * arm * per_radius * share
+    w[_DAMP_A + lane] = damp * arm * arm * per_radius * share
     w[_OFFSET + lane] = m.support_offset
     w[_LEVER_X + lane] = (m.support_offset + centre_y) * per_radius
-    w[_LEVER_Y + lane] = -centre_x * per_radius
+    w[_LEVER_Y + lane] = (lever - centre_x) * per_radius
+    w[_LEVER + lane] = lever
     w[_PER_RADIUS + lane] = per_radius
     w[_CENTRE_X + lane], w[_CENTRE_Y + lane] = centre_x, centre_y
 
@@ -147,7 +152,9 @@ def accelerate(w):
         offset = w[_OFFSET + lane]
         p_x = w[_STIFF_X + lane] * fma(offset, alpha, w[_X + lane])
         p_x = fma(w[_DAMP_X + lane], fma(offset, va, w[_VX + lane]), p_x)
-        p_y = fma(w[_STIFF_Y + lane], w[_Y + lane], w[_DAMP_Y + lane] * w[_VY + lane])
+        lever = w[_LEVER + lane]
+        p_y = w[_DAMP_Y + lane] * fma(lever, va, w[_VY + lane])
+        p_y = fma(w[_STIFF_Y + lane], fma(lever, alpha, w[_Y + lane]), p_y)
         p_a = fma(w[_STIFF_A + lane], alpha, w[_DAMP_A + lane] * va)
         p_a += fma(w[_LEVER_X + lane], p_x, w[_LEVER_Y + lane] * p_y)
         n_1, n_2 = w[_RADIAL_1 + lane] * square_1, w[_RADIAL_2 + lane] * square_2

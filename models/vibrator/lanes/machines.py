@@ -46,10 +46,16 @@ class Machines(NamedTuple):
         )
 
 
-def follows(p: Rows, settings: Settings) -> NDArray[np.bool_]:
-    """Return which machines the lanes can follow: motors bolted to the body, no feed."""
+def is_rigid(p: Rows, settings: Settings) -> NDArray[np.bool_]:
+    """Return which machines lanes can follow at speed: motors bolted to the body, no feed."""
     rigid = np.isinf(p.mount_stiffness) & np.isinf(p.mount_rotational_stiffness)
-    return rigid & (p.feed_mass == 0) & (settings.kinematics == "small")
+    rigid &= (p.feed_mass == 0) & (p.torque_lag == 0)
+    return rigid & (settings.kinematics == "small")
+
+
+def follows(p: Rows, settings: Settings) -> NDArray[np.bool_]:
+    """Return which machines lanes can follow from the start: rigid ones, switched on directly."""
+    return is_rigid(p, settings) & (p.ramp_time == 0)
 
 
 def prepared(p: Rows) -> Machines:

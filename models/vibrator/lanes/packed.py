@@ -52,6 +52,7 @@ def machine(c, lane):
         c[25 * LANES + lane],
         c[26 * LANES + lane],
         c[27 * LANES + lane],
+        c[28 * LANES + lane],
     )
 
 

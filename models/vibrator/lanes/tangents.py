@@ -113,7 +113,7 @@ def _carry(w):
 
 @kernel
 def _begin(c, h, w):
-    """Set the columns to those of the identity except that of psi_1; x is that of S."""
+    """Set the columns to those of the identity except that of psi_1; x and y are those of S."""
     support(c, h, w[_SUPPORT : _SUPPORT + SUPPORTS])
     w[_TANGENTS:_BLOCK] = 0.0
     column = 0
@@ -125,6 +125,7 @@ def _begin(c, h, w):
                 w[o + i * LANES + lane] = diagonal
                 if i == 2 or i == DEGREES + 2:
                     w[o + (i - 2) * LANES + lane] = diagonal * machine(c, lane).support_offset
+                    w[o + (i - 1) * LANES + lane] = diagonal * machine(c, lane).support_lever
             column += 1
 
 
@@ -197,6 +198,9 @@ def _note(c, w, tangents, mirror, end):
                 if i == 0 or i == DEGREES:
                     up = machine(c, lane).support_offset
                     change = fma(-up, tangents[at + 2 * LANES + lane], change)
+                if i == 1 or i == DEGREES + 1:
+                    right = machine(c, lane).support_lever
+                    change = fma(-right, tangents[at + LANES + lane], change)
                 per_step = 1.0 if i < DEGREES else 1 / w[AT.step + lane]
                 end[o + lane] = mirror[i] * (change * per_step)
         o += LANES

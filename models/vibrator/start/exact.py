@@ -117,13 +117,17 @@ def _search(
     tolerance: float,
 ) -> Orbit | None:
     """Search for a stable orbit at working speed: near the guess, else near the state."""
-    m = machine.system
-    slowest = CAPTURED_BELOW * max(m.rigid.synchronous_speed_1, m.rigid.synchronous_speed_2)
     for near in (guess, anchored(machine, state, tolerance)):
         orbit = None if near is None else find_orbit(machine, near, tolerance)
-        if orbit and orbit.multiplier < 1 - _UNSURE and 2 * np.pi / orbit.period >= slowest:
+        if orbit and is_at_work(machine.system, orbit):
             return orbit
     return None
+
+
+def is_at_work(m: System, orbit: Orbit) -> bool:
+    """Whether an orbit is stable, at working speed."""
+    slowest = CAPTURED_BELOW * max(m.rigid.synchronous_speed_1, m.rigid.synchronous_speed_2)
+    return orbit.multiplier < 1 - _UNSURE and 2 * np.pi / orbit.period >= slowest
 
 
 def _speeds(states: NDArray[np.float64], interval: float) -> NDArray[np.float64]:

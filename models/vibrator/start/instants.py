@@ -88,7 +88,8 @@ def run_exactly(
     inside = np.flatnonzero((since > 0) & (since <= times[-1] * (1 + 1e-12)))
     every = np.concatenate([times, np.minimum(since[inside], times[-1])])
     order = np.argsort(every, kind="stable")
-    ended, samples = machine.run(state, times[-1], settings.tolerance, times=every[order])
+    wanted = every[order]
+    ended, samples = machine.run(state, times[-1], settings.tolerance, times=wanted, begin=begin)
     taken, samples = order[: ended.sampled], samples[: ended.sampled]
     here = taken >= len(times)
     out.on_the_way[0, inside[taken[here] - len(times)]] = _seen(samples[here])

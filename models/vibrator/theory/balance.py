@@ -77,9 +77,10 @@ def motors(p: Rows) -> np.recarray[Any, Any]:
     synchronous = np.stack([p.synchronous_speed_1, p.synchronous_speed_2], axis=1)
     slip = synchronous - np.stack([p.breakdown_speed_1, p.breakdown_speed_2], axis=1)
     unbalance = np.stack([p.unbalance_1, p.unbalance_2], axis=1)
+    power = p.voltage_factor * p.voltage_factor
     return np.rec.fromarrays(
         Motor(
-            breakdown=2 * p.overload_capacity[:, None] * rated * slip,
+            breakdown=2 * p.overload_capacity[:, None] * rated * slip * power[:, None],
             synchronous=synchronous,
             slip=slip,
             bearing=np.stack([p.bearing_constant_1, p.bearing_constant_2], axis=1) * unbalance,

@@ -23,8 +23,8 @@ class Machine(NamedTuple):
         Of everything that vibrates, about C [kg, kg m2].
     set_mass, set_inertia : float
         Of the motor set, unbalanced masses included, about the midpoint of the shafts.
-    stiffness_x, damping_x, stiffness_y, damping_y, offset, spacing : float
-        Supports: k_x, b_x, k_y, b_y, h, l.
+    stiffness_x, damping_x, stiffness_y, damping_y, offset, spacing, lever : float
+        Supports: k_x, b_x, k_y, b_y, h, l, and l times the imbalance.
     slide_xi, slide_eta : float
         Unit vector of the mount's direction.
     slide_stiffness, slide_damping, turn_stiffness, turn_damping : float
@@ -50,6 +50,7 @@ class Machine(NamedTuple):
     damping_y: Any
     offset: Any
     spacing: Any
+    lever: Any
     slide_xi: Any
     slide_eta: Any
     slide_stiffness: Any
@@ -98,6 +99,7 @@ def machines(p: Rows) -> np.recarray[Any, Any]:
             damping_y=damping(p.damping_ratio, sprung, p.stiffness_y),
             offset=p.support_offset,
             spacing=p.support_half_spacing,
+            lever=p.support_imbalance * p.support_half_spacing,
             slide_xi=cos(p.mount_angle),
             slide_eta=sin(p.mount_angle),
             slide_stiffness=p.mount_stiffness,

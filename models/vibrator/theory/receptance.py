@@ -77,6 +77,8 @@ def respond(a, w):
     yy = x * (s * s) + y * (c * c) + inert
     xa = x * (a.offset * c) + w2 * a.set_mass * a.across
     ya = x * (-a.offset * s) - w2 * a.set_mass * R
+    xa += y * (a.lever * s)
+    ya += y * (a.lever * c)
     aa = x * (a.offset * a.offset) + y * (a.spacing * a.spacing) - w2 * a.inertia
     feed, lever = -w2 * complex(a.feed, a.feed_loss), a.feed_position
     xx += feed * (s * s)

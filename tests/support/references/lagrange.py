@@ -14,7 +14,8 @@ NAMES = (
     "body_mass body_inertia unbalance_1 unbalance_2 unbalanced_mass rotor_inertia "
     "support_half_spacing working_angle shaft_half_angle shaft_distance axis_offset "
     "stiffness_x stiffness_y damping_ratio support_offset mount_stiffness mount_angle mount_mass "
-    "mount_damping_ratio mount_rotational_stiffness mount_inertia feed_mass feed_position gravity"
+    "mount_damping_ratio mount_rotational_stiffness mount_inertia feed_mass feed_position gravity "
+    "support_imbalance"
 ).split()
 
 
@@ -93,9 +94,10 @@ def mechanics(exact):
     for side in (1, -1):
         place = sp.Matrix([side * p["support_half_spacing"], -p["support_offset"]])
         shift = centre + turn(alpha, place) - place
+        share = (1 + side * p["support_imbalance"]) / 2
         for axis, k in enumerate((p["stiffness_x"], p["stiffness_y"])):
-            potential += k / 2 * shift[axis] ** 2 / 2
-            loss += p["damping_ratio"] * sp.sqrt(sprung * k) * rate(shift[axis]) ** 2 / 2
+            potential += share * k * shift[axis] ** 2 / 2
+            loss += share * p["damping_ratio"] * sp.sqrt(sprung * k) * rate(shift[axis]) ** 2
     for at, k, inertia in (
         (5, p["mount_stiffness"], set_mass),
         (6, p["mount_rotational_stiffness"], set_inertia),
@@ -141,7 +143,7 @@ def torques(p, v):
         kloss = (w_s - w_u) * (w_s - speed) / ((w_s - w_u) ** 2 + (w_s - speed) ** 2)
         relative = speed - sense * (v[2] + v[6])
         loss = rho * getattr(p, f"unbalance_{i}") * speed**2 * np.sign(relative)
-        out[2 + i] = 2 * p.overload_capacity * rated * kloss - loss
+        out[2 + i] = 2 * p.overload_capacity * p.voltage_factor**2 * rated * kloss - loss
     return out
 
 

@@ -7,6 +7,11 @@ import numpy as np
 from models.vibrator.parameters import Params
 
 SYMMETRIC = Params(stiffness_x=2.07e6, support_offset=0.0)
+NEUTRAL = (
+    "gravity", "voltage_factor", "support_imbalance", "ramp_time", "torque_lag",
+    "ageing_time_1", "ageing_time_2",
+    "ageing_exponent", "support_hardening", "spring_life", "spring_shape",
+)  # fmt: skip
 UNDAMPED = SYMMETRIC._replace(damping_ratio=0.0, bearing_constant_1=0.0, bearing_constant_2=0.0)
 
 
@@ -16,13 +21,13 @@ def at(p, i):
 
 
 def plausible(rows, seed, **fixed):
-    """Return machines off nominal in every parameter but gravity, on mounts and with feed."""
+    """Return machines off nominal in every parameter not `NEUTRAL`, on mounts and with feed."""
     rng = np.random.default_rng(seed)
     nominal = Params()._asdict()
-    gravity = np.full(rows, nominal.pop("gravity"))
+    neutral = {name: np.full(rows, nominal.pop(name)) for name in NEUTRAL}
     p = Params(
         **{name: value * rng.uniform(0.8, 1.25, rows) for name, value in nominal.items()},
-        gravity=gravity,
+        **neutral,
     )
     between = {
         "working_angle": (-np.pi, np.pi),
@@ -107,11 +112,12 @@ def twin(p, w, dphi, instants=64):
     sprung = p.body_mass + 2 * p.unbalanced_mass
     set_mass = p.mount_mass + 2 * p.unbalanced_mass
     set_inertia = p.mount_inertia + 2 * p.unbalanced_mass * half**2
+    shares = (1 - p.support_imbalance) / 2, (1 + p.support_imbalance) / 2
     elastic = [
-        (p.stiffness_x / 2, p.damping_ratio, sprung / 2, left[:1]),
-        (p.stiffness_x / 2, p.damping_ratio, sprung / 2, right[:1]),
-        (p.stiffness_y / 2, p.damping_ratio, sprung / 2, left[1:]),
-        (p.stiffness_y / 2, p.damping_ratio, sprung / 2, right[1:]),
+        (p.stiffness_x * shares[0], p.damping_ratio, sprung * shares[0], left[:1]),
+        (p.stiffness_x * shares[1], p.damping_ratio, sprung * shares[1], right[:1]),
+        (p.stiffness_y * shares[0], p.damping_ratio, sprung * shares[0], left[1:]),
+        (p.stiffness_y * shares[1], p.damping_ratio, sprung * shares[1], right[1:]),
         (p.mount_stiffness, p.mount_damping_ratio, set_mass, slide),
         (p.mount_rotational_stiffness, p.mount_damping_ratio, set_inertia, turn),
     ]
@@ -149,9 +155,8 @@ def net_torques(p, w):
         get = dict(zip(Params._fields, p, strict=True))
         synchronous, breakdown = get["synchronous_speed_" + i], get["breakdown_speed_" + i]
         slip, behind = synchronous - breakdown, synchronous - w
-        torque = (
-            p.overload_capacity * get["rated_torque_" + i] * 2 / (slip / behind + behind / slip)
-        )
+        breakdown = p.overload_capacity * get["rated_torque_" + i] * get["voltage_factor"] ** 2
+        torque = breakdown * 2 / (slip / behind + behind / slip)
         motor.append(torque)
         net.append(torque - get["bearing_constant_" + i] * get["unbalance_" + i] * w**2)
     return net, motor

@@ -23,6 +23,7 @@ from models.vibrator.exact import propagator  # noqa: E402
 from models.vibrator.lanes.following import follow  # noqa: E402
 from models.vibrator.lanes.packed import pack  # noqa: E402
 from models.vibrator.parameters import Params as Vibrator  # noqa: E402
+from models.vibrator.service.slow_states import spring_breaks  # noqa: E402
 
 
 def bouncing_ball():
@@ -64,10 +65,18 @@ def vibrator(p, kinematics, **feed):
 def vibrator_exact():
     mounted = Vibrator(mount_stiffness=2e7)
     with_feed = vibrator(mounted, "exact", feed_mass=200.0, feed_gravity=9.81)
-    return np.concatenate([vibrator(Vibrator(), "small"), with_feed])
+    in_ramp = vibrator(Vibrator(ramp_time=0.01), "small")
+    lagging = vibrator(Vibrator(torque_lag=0.01, support_imbalance=0.3), "small")
+    return np.concatenate([vibrator(Vibrator(), "small"), with_feed, in_ramp, lagging])
 
 
-RUNS = (bouncing_ball, beam, mole, vibrator_orbit, vibrator_exact)
+def vibrator_springs():
+    p = Vibrator._make(np.array([value]) for value in Vibrator(spring_life=1e8))
+    springs = spring_breaks(p, np.array([2**63 + 5], np.uint64), 3)
+    return np.concatenate([*springs.time, *springs.left, *springs.right])
+
+
+RUNS = (bouncing_ball, beam, mole, vibrator_orbit, vibrator_exact, vibrator_springs)
 
 
 def compiled_anew():
