@@ -24,7 +24,7 @@ BOLTED, IN_BODY = (
 )
 BEARING = "assumed: friction coefficient times half the bore, 0 to 3e-4 likely"
 REGIMES = ("locked-0", "locked-pi", "asynchronous", "captured", "one-stalled")
-CAUSES = ("angle", "lost-synchronisation", "spring-break", "beyond-horizon", "never")
+CAUSES = ("angle", "lost-synchronisation", "spring-break")
 NO_AGEING = "assumed: no ageing; 2e7 to 2e8, 5,000 to 50,000 hours, likely"
 
 
@@ -322,11 +322,9 @@ OUTPUTS: Mapping[str, Output] = {
         "time in service until the disphasing angle exceeds the limit or synchronisation is lost",
         "lifetime",
         never_known_at_once=False,  # after the horizon, supports may harden without consequence
+        causes=CAUSES,
     ),
     "time_to_disphasing_error": Output(
         "s", "numerical error of the time to disphasing", may_be_undefined=True
-    ),
-    "time_to_disphasing_cause": Output(
-        "1", "why the time to disphasing ends", "category", categories=CAUSES
     ),
 }

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 from models.vibrator.parameters import CAUSES
 
-ANGLE, LOST, SPRING, LATE, NEVER = range(len(CAUSES))
+ANGLE, LOST, SPRING = range(len(CAUSES))
+NOT_ENDED, LATE = -1, -2  # never, and not until the horizon
 
 LOOKS = 20
 _POWER = 4  # of the looks' numbers, with which their times grow
@@ -36,7 +37,7 @@ class Task(NamedTuple):
     end : float
         Last time that matters [s].
     cause : int
-        Cause of the end of a life then, one of `CAUSES`.
+        Cause of the end of a life then: an index into `CAUSES`, or `LATE`.
     """
 
     limit: float
@@ -64,7 +65,7 @@ class Answer(NamedTuple):
 
 
 class Life(NamedTuple):
-    """When a life ends [s], its numerical error [s], and its cause, one of `CAUSES`."""
+    """When a life ends [s], its numerical error [s], and its cause: of `CAUSES`, or `LATE`."""
 
     time: float
     error: float

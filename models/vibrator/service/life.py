@@ -11,7 +11,7 @@ from models.vibrator.service.course import (
     ANGLE,
     LATE,
     LOST,
-    NEVER,
+    NOT_ENDED,
     SPRING,
     Answer,
     Life,
@@ -40,7 +40,7 @@ class Lives(NamedTuple):
         [s]; the error is NaN of a life that is infinite or censored.
     censored : ndarray of bool, shape (n,)
     cause : ndarray of int8, shape (n,)
-        Index into `models.vibrator.parameters.CAUSES`, -1 if unknown.
+        Index into `models.vibrator.parameters.CAUSES`, -1 of a life that has not ended.
     """
 
     time: Array
@@ -93,13 +93,14 @@ def lives(
     out.error[over] = 0.0
     out.cause[over] = np.where(locked, ANGLE, LOST)[over]
     lasting = within & ~changes(p)
-    out.time[lasting], out.cause[lasting] = np.inf, NEVER
+    out.time[lasting] = np.inf
     rows = np.flatnonzero(within & changes(p))
     if len(rows):
         fleet = _Fleet.new(rows_of(p, rows), seed[rows], angle[rows], quick[rows], settings)
         for i, life in zip(rows.tolist(), _follow(fleet, settings), strict=True):
-            out.time[i], out.error[i], out.cause[i] = life
+            out.time[i], out.error[i] = life.time, life.error
             out.censored[i] = life.cause == LATE
+            out.cause[i] = NOT_ENDED if life.cause == LATE else life.cause
     return out
 
 
