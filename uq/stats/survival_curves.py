@@ -230,9 +230,7 @@ def aalen_johansen(
        observational studies", Wiley (1995), section 10.2.
     """
     ends = np.unique(values[causes >= 0])
-    at_risk = (len(values) - np.searchsorted(np.sort(values), ends)) - (
-        len(values) - np.searchsorted(np.sort(entered), ends)
-    )
+    at_risk = _at_risk(values, entered, ends)
     every = np.bincount(np.searchsorted(ends, values[causes >= 0]), minlength=len(ends))
     mine = np.bincount(np.searchsorted(ends, values[causes == cause]), minlength=len(ends))
     left = np.cumprod((at_risk - every) / at_risk)
@@ -257,6 +255,13 @@ def aalen_johansen(
     return CumulativeIncidence(
         np.append(0.0, share)[place], np.append(0.0, np.maximum(variance, 0.0))[place]
     )
+
+
+def _at_risk(values: Floats, entered: Floats, time: Floats) -> NDArray[np.intp]:
+    """Return the number of rows at risk at each time: those with entry 0 are from the first on."""
+    late = entered[entered > 0]
+    ended, to_enter = (np.searchsorted(np.sort(part), time) for part in (values, late))
+    return np.asarray(len(values) - ended - (len(late) - to_enter))
 
 
 _FEW_BY_CAUSE = 10
@@ -287,7 +292,7 @@ def incidence_interval(
         worth = share * (1 - share) / variance
     ended = np.searchsorted(np.sort(values[causes == cause]), time, side="right")
     few = ended < _FEW_BY_CAUSE
-    at_risk = (values[:, None] >= time).sum(axis=0) - (entered[:, None] >= time).sum(axis=0)
+    at_risk = _at_risk(values, entered, time)
     size = np.where((share > 0) & (variance > 0), worth, np.maximum(at_risk, 1.0))
     hits, misses = size * share, size * (1 - share)
     exact_low = np.where(share > 0, special.betaincinv(hits, misses + 1, 1 - upper), 0.0)

@@ -142,3 +142,11 @@ def test_a_study_of_a_machine_with_intervals_says_what_inspections_leave_open(tm
     curve = uq.survival(ds, "life")
     below, after = (float(curve["survival"].sel(time=time)) for time in (2e5, 3e5))
     assert below > 0.5 > after
+
+
+def test_lives_that_end_at_once_are_at_risk():
+    values = np.array([0.0, 0.0, 1.0, 2.0, 3.0])
+    causes = np.array([0, 1, 0, 0, 1])
+    share, variance = aalen_johansen(values, causes, np.zeros(5), 0, np.array([0.0, 1.5, 3.0]))
+    assert share == pytest.approx([0.2, 0.4, 0.6], rel=1e-15)
+    assert np.isfinite(variance).all()
