@@ -102,7 +102,7 @@ FIGURES: dict[str, Entry] = {
         scatter,
         subjects.outputs,
         "{what}, against the inputs with which it varies most",
-        applies=(subjects.has_plain_rows,),
+        applies=(subjects.has_plain_rows, subjects.has_inputs),
         leading=subjects.the_first,
     ),
     "convergence": Entry(

@@ -1,6 +1,7 @@
 """A record of lives from the field, read from CSV as a result without a model."""
 
 import csv
+import hashlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -475,6 +476,7 @@ def _as_result(
     ds.attrs |= {
         "title": f"lives of {path.name}",
         "study": study,
+        "study_sha256": hashlib.sha256(study.encode()).hexdigest(),
         "study_identity": "",
         "design": "imported",
         "samples": n,

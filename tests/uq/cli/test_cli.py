@@ -15,7 +15,7 @@ import uq as api
 from uq.cli.printing import print_json
 
 GROUPS = {
-    "Start": "models init simulate schema serve",
+    "Start": "models init simulate import schema serve",
     "Run": "plan run status extend rerun",
     "Read": "summary sensitivity levels twin export plot report",
     "Decide": "compare what-if fleet rare-event",

@@ -181,7 +181,10 @@ def import_(
     threshold: given.Times = None,
     quiet: given.Quiet = False,
 ) -> None:
-    """Read lives from the field into a result; other columns of numbers become inputs."""
+    """Read lives from the field into a result.
+
+    Other columns of numbers become inputs.
+    """
     from uq.cli import summary_tables
     from uq.files.whole_files import check_target, write_result
     from uq.result.life_record import RecordColumns, read_lives
@@ -324,7 +327,7 @@ def compare(
     ] = None,
     json: given.Json = False,
 ) -> None:
-    """Show how two studies of one model differ, or lives from the field and a study."""
+    """Show how two studies, or lives and a study, differ."""
     from uq.cli import compare
 
     compare.compare(first, second, json, output, plot)

@@ -203,6 +203,11 @@ def has_plain_rows(findings: Findings, name: str) -> bool:
     return not findings.result.has_weights
 
 
+def has_inputs(findings: Findings, name: str) -> bool:
+    """Return whether an input varies."""
+    return bool(findings.result.study.uncertain)
+
+
 def has_enough_rows(findings: Findings, name: str) -> bool:
     """Return whether an input varies, and there are enough rows for slices of it."""
     return bool(independent_inputs(findings.rows)) and len(findings.rows) >= _FEWEST_ROWS

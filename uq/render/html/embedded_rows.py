@@ -163,7 +163,12 @@ def why_no_rows(findings: Findings) -> str:
         return "Inspections have weighted the rows, and a page needs rows of equal weight."
     if not len(findings.rows):
         return f"No row of design '{findings.result.design_name}' follows the laws of the inputs."
-    if any(findings.rows.elements(_outputs(findings))):
+    if findings.result.is_field_record and not independent_inputs(findings.rows):
+        return "The rows have no inputs to explore."
+    elements = list(findings.rows.elements(_outputs(findings)))
+    if any(element.entered is not None for element in elements):
+        return "Rows that came under observation late do not represent all lives."
+    if elements:
         return ""
     if any(findings.rows.elements(findings.result.shown_outputs(findings.result.analysis))):
         return "No row has a value of any output."
