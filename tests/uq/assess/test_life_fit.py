@@ -80,7 +80,8 @@ def test_fits_are_a_table_and_in_json():
     life = lives(sample(LOGNORMAL))
     table = uq.life_fits(life, "life")
     entries = summary_facts(summarise(Result(life), fits=True)).json["outputs"]["life"]["fits"]
-    assert table.index.to_list() == [("life", "weibull"), ("life", "lognormal")]
+    laws = ["weibull", "lognormal", "gamma", "exponential", "weibull-3", "weibull-mixture"]
+    assert table.index.to_list() == [("life", law) for law in laws]
     good, bad = table.loc[("life", "lognormal")], table.loc[("life", "weibull")]
     assert good["refused"] == "" and bad["refused"] == entries["weibull"]["refused"]
     for name in ("B1", "B10", "B50"):
@@ -114,7 +115,9 @@ def test_what_cannot_be_fitted_is_refused():
         (np.full(400, 5.0), None, "share fewer than 20 values"),
     ):
         fits = uq.life_fits(lives(values, censored), "life")
-        assert fits["refused"].str.contains(sentence).all()
+        # An exponential life may be 0: its density is finite there.
+        kept = fits.drop(("life", "exponential")) if values is zero else fits
+        assert kept["refused"].str.contains(sentence).all()
     fits = uq.life_fits(lives(good, method="halton"), "life")
     assert fits["refused"].str.contains("independent rows").all()
     with pytest.raises(InputError, match="not a lifetime"):
