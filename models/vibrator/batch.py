@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from models.vibrator.lanes.machines import follows, is_rigid
 from models.vibrator.parameters import Params, Rows, Settings
 from models.vibrator.run_down import run_downs
-from models.vibrator.service.life import lives
+from models.vibrator.service.life import angles_in_service, lives
 from models.vibrator.start import exact, fast
 from models.vibrator.start.regimes import Outcome, wrapped
 from models.vibrator.theory import averaged
@@ -70,6 +70,8 @@ def batch(
         "time_to_disphasing_error": life.error,
         "time_to_disphasing_cause": life.cause,
     }
+    if settings.service_times:
+        outputs["service_angle"] = angles_in_service(p, seed, *seen[:2], rigid, settings)
     if settings.instants:
         angle, speed_1, speed_2 = np.moveaxis(outcome.on_the_way, 2, 0)
         outputs["run_up_angle"] = wrapped(angle)

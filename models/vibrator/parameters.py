@@ -233,6 +233,15 @@ class Settings:
     run_down: Annotated[
         float, Setting("longest run-down simulated", "s", bounds=(1.0, 36000.0))
     ] = 1000.0
+    service_times: Annotated[
+        tuple[float, ...],
+        Setting(
+            "times in service at which the disphasing angle is reported",
+            "s",
+            bounds=(0.0, 1e11),
+            optional=True,
+        ),
+    ] = ()
     body_points: Annotated[
         tuple[tuple[float, float], ...],
         Setting(
@@ -249,6 +258,9 @@ class Settings:
             raise ValueError("instants must be a list of increasing numbers")
         if instants and instants[-1] > self.run_up:
             raise ValueError("instants must not lie beyond the run_up")
+        times = self.service_times
+        if any(b <= a for a, b in zip(times, times[1:], strict=False)):
+            raise ValueError("service_times must be a list of increasing numbers")
         phases = self.run_down_phases
         if any(b <= a for a, b in zip(phases, phases[1:], strict=False)):
             raise ValueError("run_down_phases must be a list of increasing numbers")
@@ -256,7 +268,11 @@ class Settings:
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
     """Return the coordinates of the outputs' dimensions."""
-    return {"instant": settings.instants, "run_down_phase": settings.run_down_phases}
+    return {
+        "instant": settings.instants,
+        "run_down_phase": settings.run_down_phases,
+        "service_time": settings.service_times,
+    }
 
 
 OUTPUTS: Mapping[str, Output] = {
@@ -316,6 +332,13 @@ OUTPUTS: Mapping[str, Output] = {
         may_be_undefined=True,
         success="the machine has run down",
         never_known_at_once=False,  # without friction and damping it never comes to rest
+    ),
+    "service_angle": Output(
+        "rad",
+        "disphasing angle after the time in service",
+        "angle",
+        dims=("service_time",),
+        may_be_undefined=True,
     ),
     "time_to_disphasing": Output(
         "s",

@@ -104,6 +104,44 @@ def lives(
     return out
 
 
+def angles_in_service(
+    p: Rows,
+    seed: NDArray[np.uint64],
+    regime: NDArray[np.int8],
+    angle: Array,
+    quick: NDArray[np.bool_],
+    settings: Settings,
+) -> Array:
+    """Return the disphasing angles of n machines at the times in service that are asked for.
+
+    Arguments as for `lives`.
+
+    Returns
+    -------
+    ndarray, shape (n, len(settings.service_times))
+        [rad]; NaN of a machine that does not lock when new, or has no synchronous running then.
+    """
+    out = np.full((len(regime), len(settings.service_times)), np.nan)
+    rows = np.flatnonzero((regime == LOCKED_0) | (regime == LOCKED_PI))
+    if not len(rows):
+        return out
+    out[rows] = angle[rows, None]
+    rows = rows[changes(rows_of(p, rows))]
+    if not len(rows):
+        return out
+    fleet = _Fleet.new(rows_of(p, rows), seed[rows], angle[rows], quick[rows], settings)
+    springs, each = fleet.springs, np.arange(len(rows))
+    for j, time in enumerate(settings.service_times):
+        broken = (springs.time <= time).sum(axis=1)
+        stands = (springs.left[each, broken] > 0) & (springs.right[each, broken] > 0)
+        out[rows, j] = np.nan
+        asked = {i: Query(True, time, int(broken[i])) for i in each[stands].tolist()}
+        if asked:
+            answers = fleet.answers(asked, settings)
+            out[rows[stands], j] = [answer.angle for answer in answers]
+    return out
+
+
 class _Fleet(NamedTuple):
     """n machines in service, and what is remembered of them.
 

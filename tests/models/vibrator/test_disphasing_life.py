@@ -282,3 +282,29 @@ def test_more_looks_find_no_earlier_time(monkeypatch):
     np.testing.assert_allclose(few["time_to_disphasing"], many["time_to_disphasing"], rtol=2e-6)
     name = "time_to_disphasing_cause"
     np.testing.assert_array_equal(few[name], many[name])
+
+
+def test_angles_in_service_pass_the_limit_when_lives_end():
+    n = 24
+    rng = np.random.default_rng(8)
+    p = Params(
+        ageing_time_1=10 ** rng.uniform(7.25, 8.25, n),
+        spring_life=10 ** rng.uniform(7.85, 8.85, n),
+    )
+    times = (0.0, 2.88e7, 5.8e7, 1.5e8)
+    out = compute(p, range(n), replace(limited(0.1), service_times=times))
+    angle, life_of = out["service_angle"], out["time_to_disphasing"]
+    np.testing.assert_array_equal(angle[:, 0], out["disphasing_angle"])
+    for j, time in enumerate(times):
+        over = np.isnan(angle[:, j]) | (np.abs(angle[:, j]) > 0.1)
+        np.testing.assert_array_equal(over, life_of <= time)
+    assert 0 < (life_of <= times[1]).sum() < n
+
+
+def test_an_angle_in_service_is_undefined_where_motors_never_lock():
+    p = Params(
+        synchronous_speed_2=np.array([157.0, 140.0]), ageing_time_1=np.array([math.inf, 1e8])
+    )
+    out = compute(p, (0, 1), replace(SETTINGS, service_times=(1e7,)))
+    np.testing.assert_array_equal(np.isnan(out["service_angle"][:, 0]), [False, True])
+    assert out["service_angle"][0, 0] == out["disphasing_angle"][0]
