@@ -274,7 +274,7 @@ def incidence_interval(
 
     Arguments as for `aalen_johansen`. It is symmetric about the logarithm of -log(1 - F) [1]_. With
     fewer than 10 ends by the cause it is the exact binomial one for the number of rows that has the
-    same variance [2]_; with none, for the rows still at risk.
+    same variance [2]_; with none, for the rows at risk and those that ended.
 
     References
     ----------
@@ -293,7 +293,9 @@ def incidence_interval(
     ended = np.searchsorted(np.sort(values[causes == cause]), time, side="right")
     few = ended < _FEW_BY_CAUSE
     at_risk = _at_risk(values, entered, time)
-    size = np.where((share > 0) & (variance > 0), worth, np.maximum(at_risk, 1.0))
+    # Rows that ended by another cause are known not to end by this one.
+    observed = at_risk + np.searchsorted(np.sort(values[causes >= 0]), time)
+    size = np.where((share > 0) & (variance > 0), worth, np.maximum(observed, 1.0))
     hits, misses = size * share, size * (1 - share)
     exact_low = np.where(share > 0, special.betaincinv(hits, misses + 1, 1 - upper), 0.0)
     exact_high = np.where(share < 1, special.betaincinv(hits + 1, misses, upper), 1.0)
