@@ -149,9 +149,9 @@ class Output:
     success: str = ""
     never_known_at_once: bool = True
     shown: bool = True
+    scales: Mapping[str, float] | Scales = field(default_factory=dict, hash=False)
     causes: tuple[str, ...] = ()
     may_be_between: bool = False
-    scales: Mapping[str, float] | Scales = field(default_factory=dict, hash=False)
 
     @property
     def exponents(self) -> Mapping[str, float]:

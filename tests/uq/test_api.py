@@ -46,6 +46,8 @@ def test_everything_promised_is_there():
             "machine",
             "Returned",
             "censored",
+            "between",
+            "import_lives",
             "two_fidelities",
             "running_estimates",
             "enough",

@@ -51,16 +51,16 @@ class Element:
         Where the value is missing because the row failed.
     law : RowLaw, optional
         Conditional law of the life in each row, if the inputs that scale it are integrated.
+    weights : ndarray, shape (n,), optional
+        Weights of the rows, if they represent a posterior or another study.
+    most : float
+        The largest weight that a row can have.
     high : ndarray, shape (n,), optional
         Upper bounds of censored lives that are known to end between two times, else infinite.
     entered : ndarray, shape (n,), optional
         Times from which rows were under observation: late entry.
     causes : ndarray of int8, shape (n,), optional
         Index into the causes of the life; -1 where it has not ended.
-    weights : ndarray, shape (n,), optional
-        Weights of the rows, if they represent a posterior or another study.
-    most : float
-        The largest weight that a row can have.
     """
 
     name: str
@@ -71,11 +71,11 @@ class Element:
     censored: Mask
     failed: Mask
     law: RowLaw | None = None
+    weights: Floats | None = None
+    most: float = inf
     high: Floats | None = None
     entered: Floats | None = None
     causes: NDArray[np.int8] | None = None
-    weights: Floats | None = None
-    most: float = inf
 
     @property
     def units(self) -> str:

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, isotonic_regression
 
 from uq.contract import Floats
 from uq.stats.estimate import Estimate
@@ -186,6 +185,8 @@ class _Problem:
 
 def _minorant(wanted: Floats, weights: Floats, least: float, most: float) -> Floats:
     """Return the weighted isotonic regression within bounds; entries without weight follow."""
+    from scipy.optimize import isotonic_regression  # here: its import takes long
+
     target, free = np.full(len(wanted), least), weights > 0
     if free.any():
         target[free] = isotonic_regression(wanted[free], weights=weights[free]).x
@@ -197,6 +198,8 @@ def _pinned(ended: Floats, at_risk: Floats, k: int, value: float) -> Floats:
 
     The hazards are d / (Y + multiplier) up to there, as by Thomas and Grunkemeier.
     """
+    from scipy.optimize import brentq
+
     d, y = ended[:k], at_risk[:k]
     some_end = d > 0
     hazard = np.zeros_like(ended)

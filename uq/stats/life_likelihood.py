@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import exp, inf, isfinite, log, nan, sqrt
 
 import numpy as np
-from scipy import optimize, special
+from scipy import special
 
 from uq.contract import Floats
 from uq.stats.estimate import Estimate
@@ -106,6 +106,8 @@ def _mixture_survival(w: Floats, others: Floats) -> Floats:
 
 
 def _mixture_quantile(p: float, others: Floats) -> float:
+    from scipy import optimize  # here: its import takes long
+
     def excess(logarithm: float) -> float:
         return -float(np.expm1(_mixture_survival(np.array([exp(logarithm)]), others)[0])) - p
 
@@ -281,6 +283,8 @@ class _Likelihood:
 
         From a start that is near it, without a simplex.
         """
+        from scipy import optimize  # here: its import takes long
+
         if not len(start):
             return start, self(build(start))
 

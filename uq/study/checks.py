@@ -14,7 +14,6 @@ from uq.sampling.designs import DESIGNS, PATHS, Design
 from uq.sampling.input_faults import InputFault, unknown
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.sampling.named_values import parameter_problem, read_settings, setting_types, unknown_name
-from uq.study.file import number_of_fixed
 from uq.text.element_names import place_of, places, whole_name
 from uq.text.quantities import misfit, read_quantity
 
@@ -115,6 +114,11 @@ def _element_faults(
     elif not place_of(element, axes):
         problem = f"no such element{nearest(element, names)} (allowed: {choices(names)})"
         yield InputFault(("design", "until", "output"), problem, element)
+
+
+def number_of_fixed(entry: Any) -> Any:
+    """Return the number of an entry in [fixed], which may be a table with its source."""
+    return entry.get("value") if isinstance(entry, Mapping) else entry
 
 
 def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[InputFault]:

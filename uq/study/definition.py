@@ -24,7 +24,7 @@ from uq.sampling.input_faults import InputFault
 from uq.sampling.law import Law
 from uq.sampling.named_values import read_settings
 from uq.study.changes import change, study_text
-from uq.study.checks import design_faults, model_faults
+from uq.study.checks import design_faults, model_faults, number_of_fixed
 from uq.study.file import (
     NAME,
     AnalysisTable,
@@ -32,7 +32,6 @@ from uq.study.file import (
     DesignTable,
     StudyFile,
     Tied,
-    number_of_fixed,
 )
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
 from uq.study.installed_models import find_model, model_at

@@ -372,11 +372,6 @@ def source_of_fixed(value: float) -> str:
     return value.source if isinstance(value, Sourced) else ""
 
 
-def number_of_fixed(entry: Any) -> Any:
-    """Return the number of an entry in [fixed], which may be a table with its source."""
-    return entry.get("value") if isinstance(entry, Mapping) else entry
-
-
 def _fixed_value(entry: Any, number: ValidatorFunctionWrapHandler) -> Any:
     if not isinstance(entry, Mapping):
         return entry if isinstance(entry, Sourced) else number(entry)

@@ -14,7 +14,7 @@ from uq.result.element import Element
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.importance_weights import smoothed
 
-CHOSEN_IN = {"sample.py", "counted_rows.py", "weighted_mixture.py"}
+CHOSEN_IN = {"sample.py", "counted_rows.py", "observed_lives.py", "weighted_mixture.py"}
 ROWS = 240
 
 
