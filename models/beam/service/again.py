@@ -93,6 +93,9 @@ def _refuse_other_changes(x: Array, settings: Settings, kept: Kept) -> None:
     if len(changed):
         name = Params._fields[changed[0]]
         raise ValueError(f"{name} moves the beam: only wear, creep and duty can change")
+    preload = Params._fields.index("preload_deflection")
+    if (x[:, preload] != kept.x[:, preload]).any():
+        raise ValueError("preload_deflection moves the gaps at which the maps begin")
     for field in fields(settings):
         name = field.name
         if name not in _FREE_SETTINGS and getattr(settings, name) != getattr(before, name):

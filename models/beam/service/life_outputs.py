@@ -101,8 +101,14 @@ def _note(
     outputs["lifetime_ratio"][rows] = np.divide(linear, life, out=ratio, where=defined)
     outputs["gap_ratio"][rows] = _gap_ratio(p, lives, life, first[:, 0], whole, settings)
     outputs["regime_changes"][rows] = np.where(lives.lost, np.nan, lives.changes)
+    unknown: NDArray[np.bool_] = np.zeros(n, bool)
     if settings.instants:
         worn = np.minimum(lives.worn, settings.depths[-1]).transpose(0, 2, 1)
+        # A site at the last depth is not followed further, as a map may end there.
+        instants = np.array(settings.instants)
+        at_last = reached[:, :, -1, None] & (sites[:, :, -1, None] <= instants)
+        worn = np.where(np.isnan(worn) & at_last, settings.depths[-1], worn)
+        unknown = np.asarray(np.isnan(worn).any(axis=(1, 2)))
         outputs["worn_depth"][rows] = worn
         outputs["largest_worn_depth"][rows] = worn.max(axis=1)
         part = {"worn_depth": worn}
@@ -113,7 +119,8 @@ def _note(
         gap = np.where(np.isfinite(lives.map_gap), lives.map_gap, np.nan)
         for name, values in zip(MAPS, (gap, lives.map_work, lives.map_error), strict=True):
             outputs[name][rows] = values
-    status = np.where(lives.lost | lives.unfinished, Status.OUT_OF_BUDGET, Status.OK)
+    unfinished = lives.lost | lives.unfinished | unknown
+    status = np.where(unfinished, Status.OUT_OF_BUDGET, Status.OK)
     return status.astype(np.int8)
 
 

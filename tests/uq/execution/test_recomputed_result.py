@@ -64,6 +64,19 @@ def test_changed_settings_and_inputs_give_what_a_run_would(rods):
     assert lives[0].equals(lives[1])
 
 
+def test_instants_after_the_last_depth_need_no_map(rods):
+    lives = api.open_result(rods)["time_to_depth"].values
+    assert np.isfinite(lives).all()
+    instants = [float(lives.min()) / 2, 1.1 * float(lives.max())]
+    changes = {"study.name": "later", "settings.instants": instants}
+    again = api.recompute(rods, changes)
+    study = api.load_study(rods.with_suffix(".toml")).with_changes(changes)
+    run = api.run(study, rods.with_name("later.nc"), workers=0)
+    assert (again["status"] == 0).all() and (again["worn_depth"][:, :, 1] == 2e-5).all()
+    for name, variable in run.variables.items():
+        np.testing.assert_array_equal(again[name].values, variable.values, err_msg=str(name))
+
+
 def test_a_what_if_on_settings_prints_both_and_keeps_the_new_result(rods, uq, monkeypatch):
     monkeypatch.chdir(rods.parent)
     ended = uq("what-if", "rods.nc", "--set", "settings.scar=flat-bar", "-o", "flat.nc")
@@ -88,6 +101,14 @@ def test_depths_that_the_result_has_not_are_named(rods, uq):
     [
         ({"fixed.contact_stiffness": 2e4}, "contact_stiffness moves the beam"),
         ({"settings.elements": 12}, "elements moves the beam"),
+        (
+            {
+                "fixed.preload_deflection": 4e-5,
+                "fixed.relaxed_share": 0.2,
+                "fixed.creep_down": 6e-5,
+            },
+            "preload_deflection moves the gaps",
+        ),
         ({"settings.scar": "flat"}, "scar"),
         ({"fixed.creep": 1e-5}, "creep"),
     ],
