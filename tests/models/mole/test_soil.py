@@ -209,6 +209,7 @@ def test_rows_without_soil_keep_their_bits_beside_rows_with_it():
             np.testing.assert_array_equal(values[0], together[name][i], err_msg=name)
 
 
+@pytest.mark.slow
 def test_soil_that_grows_denser_refuses_the_mole_on_the_way():
     p = Params(control_frequency=7.0, soil_limit=5.0, soil_limit_gradient=60.0)
     seed = np.zeros(1, np.uint64)
