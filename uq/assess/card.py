@@ -24,6 +24,7 @@ from uq.assess.answer.wording import (
     few_values,
     mark_of,
     scale_warning,
+    tied_to,
     without_source,
 )
 from uq.assess.card_numbers import Headline, headlines
@@ -325,7 +326,7 @@ def _next(result: Result, answer: Answer) -> Iterator[str]:
             case "measure":
                 yield f"measure {words}"
             case "tighten" if entry.tightened is not None and not entry.tightened.reason:
-                yield f"tighten {words}{_tied_to(result, entry.inputs)}"
+                yield f"tighten {words}{_with_tied(result, entry.inputs)}"
             case "chance":
                 yield f"expect little of tolerances: {_chance(answer)}"
             case "source":
@@ -347,13 +348,9 @@ def _next(result: Result, answer: Answer) -> Iterator[str]:
                 yield "nothing: the question is settled"
 
 
-def _tied_to(result: Result, inputs: Sequence[str]) -> str:
+def _with_tied(result: Result, inputs: Sequence[str]) -> str:
     """Return the inputs that equal one of these in every row, in words after it; or ""."""
-    tied = [
-        name
-        for name, law in result.study.uncertain.items()
-        if isinstance(law, Tied) and law.equals in inputs
-    ]
+    tied = [*tied_to(result, inputs)]
     return f" (with {called_together(tied)}, which equals it)" if tied else ""
 
 

@@ -150,3 +150,10 @@ def test_lives_that_end_at_once_are_at_risk():
     share, variance = aalen_johansen(values, causes, np.zeros(5), 0, np.array([0.0, 1.5, 3.0]))
     assert share == pytest.approx([0.2, 0.4, 0.6], rel=1e-15)
     assert np.isfinite(variance).all()
+
+
+def test_a_cause_that_ends_no_row_is_rare_also_when_few_rows_are_left():
+    values, causes = np.arange(1.0, 1001.0), np.zeros(1000, int)
+    low, high = incidence_interval(values, causes, np.zeros(1000), 1, np.array([500.0, 999.0]))
+    assert (low == 0).all()
+    assert high == pytest.approx(1 - 0.025 ** (1 / 1000), rel=1e-9)

@@ -11,11 +11,10 @@ from uq.assess.answer.events import Event, event
 from uq.assess.answer.leading_level import VarianceComponents, levels_of, mixing, starts_alike
 from uq.assess.answer.quantities import only_ranked, quantities
 from uq.assess.answer.sufficiency import enough_of, settled
-from uq.assess.answer.wording import assumptions, called, sentence
+from uq.assess.answer.wording import assumptions, called, sentence, tied_to
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.result.result import AnyResult, Result
-from uq.study.file import Tied
 from uq.text.numbers import capitalized
 
 
@@ -121,12 +120,8 @@ def ties_of(result: Result, draft: Answer) -> str:
         if ranking is not None and ranking.leader is not None
         for name in ranking.leader.inputs
     }
-    tied = {
-        name: law.equals
-        for name, law in result.study.uncertain.items()
-        if isinstance(law, Tied) and law.equals in leading
-    }
-    same = (f"{called(name)} equals {called(other)}" for name, other in tied.items())
+    tied = tied_to(result, leading).items()
+    same = (f"{called(name)} equals {called(other)}" for name, other in tied)
     text = ", and ".join(same)
     return f"{capitalized(text)} in every row." if text else ""
 

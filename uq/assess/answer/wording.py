@@ -1,7 +1,7 @@
 """Inputs and outputs in words, with the quality of their sources and the units of their numbers."""
 
 import re
-from collections.abc import Sequence, Sized
+from collections.abc import Collection, Sequence, Sized
 from math import ceil, floor, isfinite, log10
 from typing import NamedTuple
 
@@ -79,6 +79,15 @@ def _states_source(result: Result, name: str) -> bool:
 
 FEW_VALUES = 100
 """An empirical law of fewer values is itself an estimate, which no interval allows for."""
+
+
+def tied_to(result: Result, inputs: Collection[str]) -> dict[str, str]:
+    """Return the inputs that equal one of some others in every row: name -> the other."""
+    return {
+        name: law.equals
+        for name, law in result.study.uncertain.items()
+        if isinstance(law, Tied) and law.equals in inputs
+    }
 
 
 def few_values(result: Result) -> dict[str, int]:
