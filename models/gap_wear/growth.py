@@ -22,7 +22,7 @@ from models.numerics.duty import (
 )
 from models.numerics.gap_drift import drift, drift_clock, drift_passes, next_kink
 from models.numerics.jit import kernel
-from models.numerics.scars import scar, scar_depth
+from models.numerics.scars import oxide_volume, scar, scar_depth
 from models.numerics.slow_time import NEVER, OUT_OF_BUDGET, PENDING, REACHED, integrator
 from models.numerics.wear_laws.laws import law_numbers
 from models.numerics.wear_laws.worn import wear_clock, wear_rate, wear_threshold
@@ -42,7 +42,7 @@ class Gap(NamedTuple):
     factor, power, tilt : float
         B, p; theta L_s of an inclined bar, inf for other scars.
     oxide, oxide_factor : float
-        delta_ox, psi_ox.
+        Volume of the scar in both bodies when the rod's is as deep as delta_ox [m3]; psi_ox.
     depths, growths : ndarray, shape (D,), (G,)
     drift : ndarray, shape (7,)
     history : ndarray, shape (2, k)
@@ -92,7 +92,9 @@ def _rate(gap, v, t, index, p):
     work_rate *= math.pow(gap / p.reference, p.exponent)  # Eq. (1)
     depth, volume = _worn_depth(v, p) / (1 + p.kappa), v[0] / (1 + p.kappa)  # Eq. (5)
     rate = p.coefficient * p.duty[index, WEAR] * work_rate
-    worn = wear_rate(rate, work_rate, t, depth, volume, p.laws, p.oxide, p.oxide_factor)
+    worn = wear_rate(rate, work_rate, t, depth, volume, p.laws)
+    if v[0] < p.oxide:
+        worn *= p.oxide_factor
     return (1 + p.kappa) * worn
 
 
@@ -163,7 +165,12 @@ def _kinks(t, p):
     return next_kink(t, p.drift, p.history)
 
 
-_integrate = integrator(_coordinates, _rates, _marks, _ends, _clock, _awakes, _kinks)
+@kernel
+def _jumps(v, p, level):
+    level[0] = p.oxide if v[0] < p.oxide else np.inf
+
+
+_integrate = integrator(_coordinates, _rates, _marks, _ends, _clock, _awakes, _kinks, _jumps)
 
 
 @kernel
@@ -174,8 +181,9 @@ def _run(
     v, floor = np.empty(1), np.empty(1)
     for i in range(len(rows)):
         row = rows[i]
+        oxide = oxide_volume(row[9], row[10], row[5], row[6], row[7], row[8])
         p = Gap(
-            row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10],
+            row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], oxide, row[10],
             depths, growths, row[_DRIFT:], history, laws, duty, in_sequence,
         )  # fmt: skip
         v[0] = 0.0

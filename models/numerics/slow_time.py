@@ -6,9 +6,9 @@ independent variable; a step is the shortest of
     h = accuracy scale/|dX/dt|,    h = accuracy tau,    h = end of the duty state - t,
 
 and is taken back and halved where its error is too large. A quantity does not grow while its gap is
-closed, X <= 0; a step ends where a gap opens or closes, and at kinks of its growth. In silence,
-when no rate is positive, the clock jumps to the earliest time at which one can be, and events that
-can no longer occur are marked as such.
+closed, X <= 0; a step ends where a gap opens or closes, where a quantity reaches a value at which
+its rate jumps, and at kinks of its growth. In silence, when no rate is positive, the clock jumps to
+the earliest time at which one can be, and events that can no longer occur are marked as such.
 
 The error of the times is of second order in the accuracy.
 
@@ -51,6 +51,7 @@ PENDING, REACHED, NEVER = 0, 1, 2
 
 _GENEROUS = 0.125  # of the error allowed, below which the next step is twice as long
 _BISECTIONS = 120
+_BELOW = 1 - 1e-15  # of a value at which a rate jumps
 _NEAR = 1e-3  # part of a step over which the slope of a mark is measured
 _CONFIDENT = 1.6449  # half-width of a 90 % interval over the standard error
 
@@ -93,6 +94,11 @@ def _smooth(t, p):
     return np.inf
 
 
+@kernel
+def _no_jumps(v, p, level):
+    level[:] = np.inf
+
+
 def integrator(
     coordinates: Callable[..., None],
     rates: Callable[..., None],
@@ -101,6 +107,7 @@ def integrator(
     clock: Callable[..., float] = _no_clock,
     awakes: Callable[..., float] = _at_once,
     kinks: Callable[..., float] = _smooth,
+    jumps: Callable[..., None] = _no_jumps,
 ) -> Callable[..., Outcome]:
     """Compile the method for one machine.
 
@@ -129,6 +136,9 @@ def integrator(
     kinks : kernel
         ``kinks(t, p)`` returns the next time at which a coordinate or a rate, as functions of time,
         have a kink or a jump; inf by default.
+    jumps : kernel
+        ``jumps(v, p, level)`` sets level[i] > 0 to the next value above v[i] at which rate i jumps;
+        inf by default. Up to there the rate is asked for quantities below it.
 
     Returns
     -------
@@ -146,11 +156,12 @@ def integrator(
     propose, correct, judge = step_of.propose, step_of.correct, step_of.judge
 
     @kernel
-    def fill_rates(v, x, t, state, p, is_open, rate, noise):
-        """Set the rates, which are 0 where a gap is closed."""
+    def fill_rates(v, x, t, state, p, is_open, level, held, rate, noise):
+        """Set the rates, which are 0 where a gap is closed, on this side of their jumps."""
         for i in range(len(x)):
             noise[i] = 0.0
-        rates(v, x, t, state, p, rate, noise)
+            held[i] = min(v[i], _BELOW * level[i])
+        rates(held, x, t, state, p, rate, noise)
         for i in range(len(x)):
             if not is_open[i]:
                 rate[i] = noise[i] = 0.0
@@ -167,10 +178,11 @@ def integrator(
         marks(v, x, t + part * span, p, mark)
 
     @kernel
-    def crossing(step, high, t, span, state, p, gap, event, begins_open, v, x, mark):
+    def crossing(step, high, t, span, state, p, gap, begins_open, level, event, v, x, mark):
         """Return the first part of a step at which a gap has changed or an event occurred.
 
-        `gap` or `event` is its number, the other -1; it has happened at the part `high`.
+        A gap also changes where its quantity reaches the level. `gap` or `event` is its number, the
+        other -1; it has happened at the part `high`.
         """
         low = 0.0
         for _ in range(_BISECTIONS):
@@ -178,7 +190,10 @@ def integrator(
             if not low < middle < high:
                 break
             look(step, middle, t, span, state, p, v, x, mark)
-            has_changed = (x[gap] > 0) != begins_open if gap >= 0 else mark[event] > 0
+            if gap >= 0:
+                has_changed = (x[gap] > 0) != begins_open or v[gap] >= level
+            else:
+                has_changed = mark[event] > 0
             if has_changed:
                 high = middle
             else:
@@ -216,7 +231,7 @@ def integrator(
                 continue
             look(step, upto, t, span, state, p, v, x, mark)
             if mark[event] > 0:
-                at = crossing(step, upto, t, span, state, p, -1, event, False, v, x, mark)
+                at = crossing(step, upto, t, span, state, p, -1, False, 0.0, event, v, x, mark)
                 fate[event] = REACHED
                 times[event] = t + at * span
                 errors[event] = time_error(step, at, t, span, state, p, event, v, x, mark)
@@ -244,10 +259,11 @@ def integrator(
     def integrate(t, end, v, p, accuracy, floor, budget, fate, times, errors, instants, seen):
         k, q = len(v), len(fate)
         step = np.zeros((VARIANCE + 1, k))
-        v_at, x_at = np.empty(k), np.empty(k)
+        v_at, x_at, held, level = np.empty(k), np.empty(k), np.empty(k), np.empty(k)
         mark = np.empty(q)
         is_open = np.zeros(k, np.bool_)
         copy(v, step[V])
+        jumps(v, p, level)
         fate[:] = PENDING
         times[:] = np.inf
         errors[:] = 0.0
@@ -270,7 +286,9 @@ def integrator(
                 passed = watch(
                     step, 0.0, t, 0.0, state, p, instants, seen, passed, v_at, x_at, mark
                 )
-                fill_rates(step[V], step[X], t, state, p, is_open, step[RATE], step[NOISE])
+                fill_rates(
+                    step[V], step[X], t, state, p, is_open, level, held, step[RATE], step[NOISE]
+                )
                 span_before, entered = 0.0, False
             if (pending == 0 and passed == len(instants)) or t >= end:
                 status = ENDED
@@ -303,7 +321,9 @@ def integrator(
                 t, jumped = reached, wake <= part_end
                 entered = t == part_end and t < end
                 coordinates(step[V], t, state, p, step[X])
-                fill_rates(step[V], step[X], t, state, p, is_open, step[RATE], step[NOISE])
+                fill_rates(
+                    step[V], step[X], t, state, p, is_open, level, held, step[RATE], step[NOISE]
+                )
                 span_before, span_next = 0.0, end - t
                 continue
 
@@ -316,12 +336,23 @@ def integrator(
                 state,
                 p,
                 is_open,
+                level,
+                held,
                 step[RATE_STAR],
                 step[NOISE],
             )
             correct(step, t, span, state, p)
             fill_rates(
-                step[V_END], step[X_END], t + span, state, p, is_open, step[RATE_END], step[NOISE]
+                step[V_END],
+                step[X_END],
+                t + span,
+                state,
+                p,
+                is_open,
+                level,
+                held,
+                step[RATE_END],
+                step[NOISE],
             )
             worst = judge(step, t, span, span_before, state, p, accuracy, floor)
             if not worst <= 1:
@@ -332,10 +363,14 @@ def integrator(
             accumulate(step, span)
             cut, changes = 1.0, -1
             for i in range(k):
-                if (step[X_END, i] > 0) != is_open[i]:
-                    at = crossing(step, cut, t, span, state, p, i, -1, is_open[i], v_at, x_at, mark)
+                if (step[X_END, i] > 0) != is_open[i] or step[V_END, i] >= level[i]:
+                    opened, last = is_open[i], level[i]
+                    at = crossing(
+                        step, cut, t, span, state, p, i, opened, last, -1, v_at, x_at, mark
+                    )
                     look(step, at, t, span, state, p, v_at, x_at, mark)
-                    if (x_at[i] > 0) != is_open[i]:  # not after an earlier change of another gap
+                    # Not after an earlier change of another.
+                    if (x_at[i] > 0) != opened or v_at[i] >= last:
                         cut, changes = at, i
             pending -= note(step, cut, t, span, state, p, fate, times, errors, v_at, x_at, mark)
             passed = watch(step, cut, t, span, state, p, instants, seen, passed, v_at, x_at, mark)
@@ -347,8 +382,11 @@ def integrator(
                 t += cut * span
                 copy(v_at, step[V])
                 copy(x_at, step[X])
-                is_open[changes] = not is_open[changes]
-                fill_rates(step[V], step[X], t, state, p, is_open, step[RATE], step[NOISE])
+                is_open[changes] = x_at[changes] > 0
+                jumps(v_at, p, level)
+                fill_rates(
+                    step[V], step[X], t, state, p, is_open, level, held, step[RATE], step[NOISE]
+                )
                 span_before = 0.0
                 continue
             copy(step[RATE], step[BEFORE])

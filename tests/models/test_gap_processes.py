@@ -12,7 +12,7 @@ from models.gap_wear import declarations as gap_wear
 from models.gap_wear.batch import batch
 from models.gap_wear.declarations import GapWearParameters, GapWearSettings
 from models.numerics.duty import ORDERS
-from models.numerics.scars import SCARS
+from models.numerics.scars import SCARS, scar, scar_volume
 from models.numerics.wear_laws.laws import ARCHARD, LAWS
 from uq.contract import Status
 
@@ -125,7 +125,28 @@ def test_an_oxide_wears_at_a_rate_of_its_own(kappa):
     oxide = {"oxide_thickness": 1e-5, "oxide_wear_factor": 1 / 15}
     known_time = (15 * 1e-5 + 4.26e-4) / RATE
     time = life(support_wear_ratio=kappa, **oxide)
-    assert time == pytest.approx(known_time, rel=1e-4)
+    assert time == pytest.approx(known_time, rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", SCARS)
+def test_a_step_ends_where_the_rod_has_passed_its_oxide(shape):
+    """At a steady work-rate T = V_ox/(psi k U) + (V - V_ox)/(k U), for every scar."""
+    rng = np.random.default_rng(3)
+    settings = GapWearSettings(depths=(5e-5,), scar=shape)
+    for psi in (1 / 15, 0.7, 4.0):
+        p = GapWearParameters(oxide_thickness=rng.uniform(2e-6, 3e-5), oxide_wear_factor=psi)
+        kappa = p.support_wear_ratio
+        bodies = scar(
+            shape, np.array(p.contact_area), p.rod_radius, p.support_width, p.support_radius,
+            p.support_inclination,
+        )  # fmt: skip
+        oxide, depth = (
+            scar_volume((1 + kappa) * h, *map(float, bodies)) / (1 + kappa)
+            for h in (p.oxide_thickness, 5e-5)
+        )
+        expected = (oxide / psi + depth - oxide) / (p.wear_coefficient * p.work_rate)
+        time = lives(rows=[p], settings=settings)["time_to_depth"][0]
+        np.testing.assert_allclose(time, expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize("share", [0.2, 3.0])

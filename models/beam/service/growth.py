@@ -17,7 +17,7 @@ from models.numerics import duty as duty_states
 from models.numerics.duty import OFFSET, TIME, WEAR, end_of_state, offset_of_state
 from models.numerics.gap_drift import drift, drift_clock, drift_falls, drift_passes, next_kink
 from models.numerics.jit import kernel
-from models.numerics.scars import scar_depth
+from models.numerics.scars import oxide_volume, scar_depth
 from models.numerics.slow_time import integrator
 from models.numerics.wear_laws.worn import wear_clock, wear_rate
 
@@ -45,7 +45,7 @@ class Rod(NamedTuple):
     history : ndarray, shape (2, k)
     laws : ndarray, shape (l, 1 + MOST)
     oxide, oxide_factor : float
-        delta_ox, psi_ox.
+        Volume of a site's scar in both bodies when the rod's is as deep as delta_ox [m3]; psi_ox.
     duty : ndarray, shape (s, 6)
     in_sequence : bool
     reach : ndarray, shape (s,)
@@ -143,7 +143,7 @@ def _asks(right, left, s, state, p):
 
 @kernel
 def _wear(k, work, t, depth, volume, p):
-    return wear_rate(k * work, work, t, depth, volume, p.laws, p.oxide, p.oxide_factor)
+    return wear_rate(k * work, work, t, depth, volume, p.laws)
 
 
 @kernel
@@ -191,6 +191,8 @@ def _rates(v, x, t, state, p, rate, noise):
             k = p.coefficient[i] * p.duty[s, WEAR]
             worn = _wear(k, work, t, depth, volume, p)
             more = _wear(k, work + doubt, t, depth, volume, p)
+            if v[i] < p.oxide:
+                worn, more = worn * p.oxide_factor, more * p.oxide_factor
             rate[i] += share * (1 + p.kappa) * worn  # Eq. (1)
             noise[i] = np.hypot(noise[i], share * (1 + p.kappa) * (more - worn))
 
@@ -261,7 +263,13 @@ def _kinks(t, p):
     return next_kink(t, p.drift, p.history)
 
 
-_integrate = integrator(_coordinates, _rates, _marks, _ends, _clock, _awakes, _kinks)
+@kernel
+def _jumps(v, p, level):
+    for i in range(2):
+        level[i] = p.oxide if v[i] < p.oxide else np.inf
+
+
+_integrate = integrator(_coordinates, _rates, _marks, _ends, _clock, _awakes, _kinks, _jumps)
 
 _STEPS = 100_000
 
@@ -297,9 +305,10 @@ def integrate_rod(
     time : float
         Reached [s].
     """
+    oxide = oxide_volume(numbers[4], numbers[5], numbers[0], numbers[1], numbers[2], numbers[3])
     p = Rod(
         gap, coefficient, numbers[0], numbers[1], numbers[2], numbers[3], depths, growths, c,
-        history, laws, numbers[4], numbers[5], duty, in_sequence, reach, work, noise, cursor, at,
+        history, laws, oxide, numbers[5], duty, in_sequence, reach, work, noise, cursor, at,
         np.zeros(1), map_gap, map_growth, map_terms,
     )  # fmt: skip
     cursor[USED], cursor[IS_MISSING] = 0, 0

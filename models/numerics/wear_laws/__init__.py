@@ -9,5 +9,5 @@ Reading order; a module imports only those above it:
     running_in      a rate that changes as the scar grows
     edf             a power of the work-rate that tends to a given rate in time
     laws            all of them, by name, and their values as numbers
-    worn            the rate of wear by a law, and that of oxide
+    worn            the rate of wear by a law
 """

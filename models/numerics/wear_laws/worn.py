@@ -1,4 +1,4 @@
-"""The rate of wear by a law, and that of oxide."""
+"""The rate of wear by a law."""
 
 from collections.abc import Callable, Sequence
 
@@ -59,11 +59,8 @@ _clock_of = _chosen([law.clock for law in LAWS])
 
 
 @kernel
-def wear_rate(rate, work_rate, t, depth, volume, laws, oxide, oxide_factor):
+def wear_rate(rate, work_rate, t, depth, volume, laws):
     """Return the volume worn off the rod per time [m3/s] by a law, from that by Archard's law.
-
-    An oxide layer of 2 to 30 um wears more slowly than the metal below it: pre-oxidised cladding by
-    about 15 times, by depth.
 
     Parameters
     ----------
@@ -73,13 +70,11 @@ def wear_rate(rate, work_rate, t, depth, volume, laws, oxide, oxide_factor):
         Time [s], depth [m] and volume [m3] of the rod's scar.
     laws : ndarray, shape (l, 1 + MOST)
         From `models.numerics.wear_laws.laws.law_numbers`.
-    oxide, oxide_factor : float
-        Depth down to which the rate is multiplied by the factor [m], [1].
     """
     for i in range(len(laws)):
         if rate > 0:
             rate = _rate_of(laws[i, 0], rate, work_rate, t, depth, volume, laws[i, 1:])
-    return rate * oxide_factor if depth < oxide else rate
+    return rate
 
 
 @kernel
