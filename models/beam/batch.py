@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.parameters import OF_PROCESSES, Params, Rows, Settings
+from models.beam.processes import has_band
 from models.beam.response.further_starts import add_other_responses
 from models.beam.response.neighbouring_starts import add_neighbour_error
 from models.beam.response.response import Response
@@ -14,7 +15,6 @@ from models.beam.response.step_error import add_step_error
 from models.beam.start import PROPAGATORS, initial_gaps, initial_state, wear_shares
 from models.beam.structure.modal import Array, beams
 from models.beam.structure.propagation import Propagator, System
-from models.beam.structure.random_load import has_band
 from models.beam.units import newton, watt, wear_per_work
 from models.beam.wear.lives import Lives, find_lives
 from models.beam.wear.random_lives import find_random_lives

@@ -46,6 +46,7 @@ def _has_clock(settings: Settings) -> bool:
 NO_OPENING = (
     "preload_deflection > 0 and nothing opens the gaps: set creep_down, or relaxed_share below 1"
 )
+NO_BAND = "random_force_level > 0 needs random_force_high above random_force_low"
 
 
 def never_opens(p: Any, settings: Settings) -> Any:
@@ -58,11 +59,21 @@ def never_opens(p: Any, settings: Settings) -> Any:
 
 def refusal(settings: Settings, constants: Mapping[str, float]) -> str:
     """Return why no row of a study can be computed; "" if some may be."""
-    needed = ("preload_deflection", "creep_down", "relaxed_share")
-    if any(name not in constants for name in needed):
-        return ""
-    fixed = Params(**{name: constants[name] for name in needed})
-    return NO_OPENING if never_opens(fixed, settings) else ""
+
+    def given(*names: str) -> Params | None:
+        values = {name: constants[name] for name in names if name in constants}
+        return Params(**values) if len(values) == len(names) else None
+
+    preload = given("preload_deflection", "creep_down", "relaxed_share")
+    if preload and never_opens(preload, settings):
+        return NO_OPENING
+    band = given("random_force_level", "random_force_low", "random_force_high")
+    return NO_BAND if band and not has_band(band) else ""
+
+
+def has_band(p: Any) -> Any:
+    """Return whether there is no random force, or its band has a width; of n beams a mask."""
+    return (p.random_force_level == 0) | (p.random_force_high > p.random_force_low)
 
 
 def scar_scales(settings: Settings) -> Mapping[str, float]:

@@ -3,9 +3,9 @@
 import numpy as np
 
 from models.beam.parameters import Params, Rows, Settings
+from models.beam.processes import has_band
 from models.beam.start import initial_gaps, initial_state, one_system
 from models.beam.structure.modal import beams
-from models.beam.structure.random_load import has_band
 from models.beam.structure.random_response import RIGID, filtered
 from models.beam.units import newton
 from uq.contract import Trajectory

@@ -22,7 +22,7 @@ def _batch(x: Any, seed: Any, settings: GapWearSettings) -> Any:
 MODEL = Model(
     name="gap-wear",
     title="Wear of one gap that also opens by itself: known times in many special cases",
-    version="1",
+    version="2",
     parameters=GapWearParameters,
     settings=GapWearSettings,
     outputs=OUTPUTS,

@@ -64,10 +64,14 @@ def duty_numbers(
     if not tables:
         return np.array([[1.0, 1.0, 0.0] + [1.0] * len(factors)])
     time, longest = ("share", 1.0) if order == "mixed" else ("duration", _LONGEST)
-    rows = []
+    rows: list[list[float]] = []
+    names: list[str] = []
     for number, pairs in enumerate(tables, 1):
         given = dict(pairs)
         name = str(given.pop("name", number))
+        if name in names:
+            raise ValueError(f"two duty states are called '{name}'")
+        names.append(name)
         row = [_number(name, given, time, (0.0, longest), np.nan)]
         row.append(_number(name, given, "wear", (0.0, _LARGEST), 1.0))
         row.append(_number(name, given, "gap_offset", (-_OFFSET, _OFFSET), 0.0))
@@ -100,7 +104,7 @@ def history_numbers(points: Sequence[Sequence[float]]) -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If the times do not ascend from 0, or the first change is not 0.
+        If the times do not ascend from 0, the first change is not 0, or a change is too large.
     """
     history = np.array(points, float).reshape(-1, 2).T
     if history.shape[1]:
@@ -110,6 +114,10 @@ def history_numbers(points: Sequence[Sequence[float]]) -> NDArray[np.float64]:
             raise ValueError(f"gap_history must ascend in time: {after:g} s follows {before:g} s")
         if history[0, 0] != 0 or history[1, 0] != 0:
             raise ValueError("gap_history must begin with time 0 and change 0")
+        largest = float(history[1, np.abs(history[1]).argmax()])
+        if not abs(largest) <= _OFFSET:
+            bounds = f"{-_OFFSET!r} to {_OFFSET!r} [m]"
+            raise ValueError(f"changes of gap_history must be within {bounds}: {largest:g}")
     return np.ascontiguousarray(history)
 
 

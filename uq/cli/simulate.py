@@ -149,15 +149,17 @@ def _show(row: Row) -> None:
 
 
 def show_outputs(row: Row) -> None:
-    """Print every output of a row, with its unit and meaning."""
+    """Print every output of a row, with its unit and meaning; of a failed row what it has."""
     for name, output in row.model.outputs.items():
-        if not output.shown:
+        states = list(_states(row, name))
+        category = _plain(row.model, name, row.columns[name][0]) if output.is_category else None
+        is_empty = not category and all(np.isnan(value) and not state for _, value, state in states)
+        if not output.shown or (row.failed and is_empty):
             continue
         if output.is_category:
             heading(f"\n{name}", readable(output.meaning))
-            grid([("", _plain(row.model, name, row.columns[name][0]) or "none")])
+            grid([("", category or "none")])
             continue
-        states = list(_states(row, name))
         unit = unit_of(output.unit, typical(value for _, value, _ in states))
         heading(f"\n{name}{in_brackets(unit)}", readable(output.meaning))
         grid(

@@ -18,6 +18,7 @@ from uq.execution.recomputed_row import (
     changed_settings,
     computed_again,
     differing,
+    largest_change,
     settings_by_row,
     study_here,
 )
@@ -173,7 +174,7 @@ def checksum_holds(path: Path) -> bool | None:
         raise InputError(f"{path}: not a readable netCDF file") from None
 
 
-def recompute(path: Path, model: str | None = None) -> tuple[list[int], list[str]]:
+def recompute(path: Path, model: str | None = None) -> tuple[list[int], dict[str, float]]:
     """Recompute a few random rows of a result, and compare them bit by bit.
 
     Rows that crashed or timed out are skipped.
@@ -188,8 +189,9 @@ def recompute(path: Path, model: str | None = None) -> tuple[list[int], list[str
     -------
     rows : list of int
         Numbers of the recomputed rows.
-    differences : list of str
-        One sentence per row that differs.
+    differences : dict of str to float
+        For each row that differs a phrase, and by how much its numbers differ, relative to
+        themselves.
 
     Raises
     ------
@@ -201,9 +203,9 @@ def recompute(path: Path, model: str | None = None) -> tuple[list[int], list[str
     count = min(ROWS, len(candidates))
     chosen = np.sort(np.random.default_rng().choice(candidates, count, replace=False))
     settings = settings_by_row(ds, study, chosen)
-    differences = [
-        f"row {row}: {', '.join(names)}"
-        for row, row_settings in sorted(settings.items())
-        if (names := differing(computed_again(study, row_settings, row), ds.isel(row=[row])))
-    ]
+    differences = {}
+    for row, row_settings in sorted(settings.items()):
+        again, stored = computed_again(study, row_settings, row), ds.isel(row=[row])
+        if names := differing(again, stored):
+            differences[f"row {row}: {', '.join(names)}"] = largest_change(again, stored)
     return sorted(settings), differences

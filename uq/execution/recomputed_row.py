@@ -142,3 +142,25 @@ def differing(again: Row, stored: xr.Dataset) -> list[str]:
         or np.asarray(values, np.int8 if name in flags else None).tobytes()
         != stored[name].values.tobytes()
     ]
+
+
+def largest_change(again: Row, stored: xr.Dataset) -> float:
+    """Return the largest relative difference between the numbers of a row and the stored one.
+
+    It is infinite where an output of another type differs, or is missing on one side.
+    """
+    largest = 0.0
+    for name in differing(again, stored):
+        values = again.columns.get(name, again.values.get(name))
+        if values is None or name not in stored.variables:
+            return np.inf
+        now, before = np.ravel(values), np.ravel(stored[name].values)
+        if now.dtype.kind != "f" or now.shape != before.shape:
+            return np.inf
+        both = np.isfinite(now) & np.isfinite(before)
+        if not np.array_equal(now[~both], before[~both], equal_nan=True):
+            return np.inf
+        scale = np.maximum(np.abs(now[both]), np.abs(before[both]))
+        change = np.abs(now[both] - before[both]) / np.where(scale > 0, scale, 1.0)
+        largest = max(largest, change.max(initial=0.0))
+    return float(largest)

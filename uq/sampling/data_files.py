@@ -73,16 +73,15 @@ def with_rows_of_files(settings: Mapping[str, Any], columns: Columns) -> dict[st
         Setting -> its value; a table ``{file = ..., columns = [...]}`` stands for the rows of these
         columns.
     columns : dict
-        As `columns_of_files` returns them; a table whose file could not be read is left as it is.
+        As `columns_of_files` returns them; a setting whose file could not be read is left out.
     """
-    return {name: _rows(value, columns) for name, value in settings.items()}
-
-
-def _rows(value: Any, columns: Columns) -> Any:
-    texts = [columns.get(file, {}).get(column) for file, column in _columns_named(value)]
-    if not texts or None in texts:
-        return value
-    return np.stack([numbers(text) for text in texts if text is not None], axis=1).tolist()
+    read = {}
+    for name, value in settings.items():
+        texts = [columns.get(file, {}).get(column) for file, column in _columns_named(value)]
+        if None not in texts:
+            rows = [numbers(text) for text in texts if text is not None]
+            read[name] = np.stack(rows, axis=1).tolist() if rows else value
+    return read
 
 
 def _columns_named(value: Any) -> list[tuple[str, str]]:

@@ -5,6 +5,9 @@ import platform
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 __version__ = importlib.metadata.version("vibrolife")
 
@@ -47,6 +50,13 @@ def differences(wanted: Mapping[str, str]) -> str:
 
 
 def _cpu() -> str:
+    """Return the processor and its widest vectors: numpy rounds powers and logarithms by these."""
+    extensions: Any = np.show_config(mode="dicts")
+    widest = (extensions["SIMD Extensions"].get("found") or ["without vectors"])[-1]
+    return f"{_processor()}, {widest}"
+
+
+def _processor() -> str:
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

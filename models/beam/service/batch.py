@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 from models.beam import batch as of_the_beam
 from models.beam.outputs import MAP_NODES
 from models.beam.parameters import Params, Rows, Settings
-from models.beam.processes import NO_OPENING, has_processes, never_opens
+from models.beam.processes import (
+    NO_BAND,
+    NO_OPENING,
+    has_band,
+    has_processes,
+    never_opens,
+)
 from models.beam.structure.modal import Array
 from uq.contract import Status
 
@@ -84,7 +90,9 @@ def _add_maps(outputs: dict[str, NDArray[Any]], settings: Settings) -> None:
 
 def refused_rows(p: Rows, settings: Settings) -> dict[int, str]:
     """Return the rods that cannot be computed, with the reason."""
-    return dict.fromkeys(np.flatnonzero(never_opens(p, settings)).tolist(), NO_OPENING)
+    closed, bandless = never_opens(p, settings), ~has_band(p)
+    reasons = dict.fromkeys(np.flatnonzero(closed).tolist(), NO_OPENING)
+    return reasons | dict.fromkeys(np.flatnonzero(bandless).tolist(), NO_BAND)
 
 
 def add_openings(outputs: dict[str, NDArray[Any]]) -> None:

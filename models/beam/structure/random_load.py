@@ -58,22 +58,6 @@ _SPARE = 1.5  # least size over that of which a stretch only takes account
 _SHORTEST, _LONGEST = 2**10, 2**19  # sizes
 
 
-def has_band(p: Rows) -> NDArray[np.bool_]:
-    """Return which of n beams have a random force with a band, or no random force.
-
-    Parameters
-    ----------
-    p : Params
-        Each field an ndarray of shape (n,).
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-        False where a level is given but the band's upper end is not above its lower one.
-    """
-    return (p.random_force_level == 0) | (p.random_force_high > p.random_force_low)
-
-
 def random_load(p: Rows, slowest: Array, seed: NDArray[np.uint64]) -> NDArray[np.void]:
     """Return the random load of n beams.
 
@@ -91,7 +75,7 @@ def random_load(p: Rows, slowest: Array, seed: NDArray[np.uint64]) -> NDArray[np
     """
     load = np.zeros(len(seed), LOAD)
     load["stretch"] = load["rate"] = 1
-    rows = np.flatnonzero((p.random_force_level > 0) & has_band(p))
+    rows = np.flatnonzero((p.random_force_level > 0) & (p.random_force_high > p.random_force_low))
     if not len(rows):
         return load
     forcing, low, high = (

@@ -81,8 +81,13 @@ def test_a_band_without_width_is_said_and_harms_no_other_row(propagator):
     x[:, Params._fields.index("random_force_high")] = [40.0, 40.0, 50.0]
     x[:, Params._fields.index("force_amplitude")] = 0.05
     settings = Settings(depths=(1e-5,), accuracy=0.3, propagator=propagator)
-    outputs, status = MODEL.batch(x, np.zeros(3, np.uint64), settings)
+    outputs, status, reasons = MODEL.batch(x, np.zeros(3, np.uint64), settings)
     assert status.tolist() == [Status.NON_FINITE, Status.OK, Status.NON_FINITE]
+    words = "random_force_level > 0 needs random_force_high above random_force_low"
+    assert reasons == {0: words, 2: words}
+    constants = Params(random_force_level=1e-3, random_force_low=50.0, random_force_high=40.0)
+    assert MODEL.refusal(settings, constants._asdict()) == words
+    assert not MODEL.refusal(settings, constants._replace(random_force_level=0.0)._asdict())
     for name, output in MODEL.given(settings).outputs.items():
         if not output.is_category:
             assert np.isnan(outputs[name][[0, 2]]).all(), name

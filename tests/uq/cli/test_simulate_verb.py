@@ -63,6 +63,7 @@ def test_a_failed_row_is_reported(uq):
     assert ended.code == 1
     assert "raised" in ended.out
     assert "ValueError: x1 is above fail_above = 0.5" in ended.out
+    assert "y" not in ended.out.split()  # what it has no value of is not listed
     document = strict_json(uq("simulate", "linear", "--json", *faults).out)
     assert document["outputs"] == {"y": None}
     assert document["undefined"] == []

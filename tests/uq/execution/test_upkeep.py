@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import netCDF4
@@ -12,6 +13,7 @@ from wordings import sentence
 import uq as api
 from uq.contract import Status
 from uq.execution import child
+from uq.files.netcdf_files import seal
 
 RAISING = '[settings]\nfail_above = 0.5\nfail_how = "raise"\n[analysis]\nmax_failed = 1.0'
 
@@ -202,6 +204,23 @@ def test_verify_finds_rows_that_would_come_out_otherwise_and_names_versions(uq, 
     assert "numpy  0.9 made it, " in ended.out
     assert "recomputed, differs in row 3: y" in ended.out
     assert "11 of 12 recomputed are equal to the bit" in ended.out
+
+
+@pytest.mark.parametrize(("change", "code"), [(1e-15, 0), (1e-9, 1)])
+def test_another_processor_may_round_otherwise_and_no_more(uq, write_study, change, code):
+    uq("run", write_study(samples=12), "-o", "out.nc", *QUIETLY)
+    shutil.copy("out.nc", "other.nc")
+    for name in ("out.nc", "other.nc"):
+        with netCDF4.Dataset(name, "a") as file:
+            file["y"][3] *= 1 + change
+            if name == "other.nc":
+                file.setncattr("cpu", "another")
+        seal(Path(name))
+    same, other = uq("verify", "out.nc"), uq("verify", "other.nc")
+    assert (same.code, other.code) == (1, code)
+    assert "keeps state" in same.out and "keeps state" not in other.out
+    assert ("rounds otherwise" in other.out) == (code == 0)
+    assert "cpu  another made it" in other.out
 
 
 def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, write_study):

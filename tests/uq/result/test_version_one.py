@@ -32,7 +32,20 @@ def test_a_summary_of_version_one_has_the_same_numbers(kind, uq, folder):
     shutil.copy(KEPT / f"{kind}.nc", f"{kind}.nc")
     shown = json.loads(uq("summary", f"{kind}.nc", "--json").out)
     assert shown.pop("card")["rows"] == expected["answer"]["rows"]
-    assert shown == expected
+    now, before = dict(leaves(shown)), dict(leaves(expected))
+    assert now.keys() == before.keys()
+    for path, value in before.items():  # other processors round otherwise
+        is_number = isinstance(value, float)
+        assert now[path] == (pytest.approx(value, rel=1e-12) if is_number else value), path
+
+
+def leaves(tree, path=()):
+    """Yield the path and the value of each leaf of a JSON document."""
+    if not isinstance(tree, dict | list) or not tree:
+        yield path, tree
+        return
+    for key, branch in tree.items() if isinstance(tree, dict) else enumerate(tree):
+        yield from leaves(branch, (*path, key))
 
 
 @pytest.mark.parametrize("kind", KINDS)
