@@ -5,7 +5,7 @@ import pytest
 from service_rods import FIELDS, rows
 
 from models.beam import MODEL
-from models.beam.parameters import Settings
+from models.beam.parameters import Params, Settings
 from models.beam.service.work_maps import (
     MAP_NODES,
     MAP_POSITIONS,
@@ -17,7 +17,12 @@ from models.beam.service.work_maps import (
 from uq.contract import Kept, Status
 
 SHORT = {"depths": (2e-5, 4e-5), "accuracy": 0.05}
-RANDOM = {"force_amplitude": 0.0, "random_force_level": 0.05, "mass_damping": 8.0}
+RANDOM = {
+    "force_amplitude": 0.0,
+    "random_force_level": 0.05,
+    "mass_damping": 40.0,  # a short memory
+    "forcing_frequency": 200.0,  # the unit of averaging times
+}
 
 
 def computed(x, **choices):
@@ -73,6 +78,7 @@ def mapped():
     x = rows(3, **RANDOM)
     x[2, FIELDS.index("random_force_level")] = 0.0
     x[2, FIELDS.index("force_amplitude")] = 6.0
+    x[2, FIELDS.index("forcing_frequency")] = Params().forcing_frequency
     return x, *computed(x, map_growth=1e-4)
 
 

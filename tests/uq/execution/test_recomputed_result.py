@@ -32,7 +32,8 @@ sigma = 0.5
 [fixed]
 force_amplitude = 0.0
 random_force_level = 0.05
-mass_damping = 8.0
+mass_damping = 40.0
+forcing_frequency = 200.0
 
 [settings]
 depths = [2e-5]
