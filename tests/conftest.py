@@ -29,6 +29,17 @@ settings.load_profile("busy")
 compile_once_for_all_processes()
 
 
+def pytest_collection_modifyitems(items):
+    """Let a process compile the machines in one file, while others do what needs no machine."""
+    last = ("tests/docs", "tests/models")
+
+    def place(item):
+        path = item.nodeid
+        return not path.startswith("tests/test_contract.py"), path.startswith(last)
+
+    items.sort(key=place)
+
+
 class Ended(NamedTuple):
     """How a command ended."""
 
