@@ -19,6 +19,9 @@ effect of X_1 - X* on the rate, the second the error of the trapezoidal rule. To
 sum is no less than the error of the step if f depends on V alone, and equal to it if f depends on t
 alone.
 Without a step before, the second term is h |f_1 - f|/2, the error if the rate jumps in the step.
+
+Where rates are means with noise, f_1 is extrapolated from f and f*, if it differs from f* by less
+than the noise.
 """
 
 import math
@@ -101,6 +104,28 @@ def accumulate(step, span):
         local = step[LOCAL, i] if step[LOCAL, i] > _NOISY * noise else 0.0
         step[ERROR, i] = fma(step[ERROR, i], factor, local)
         step[VARIANCE, i] = fma(step[VARIANCE, i], factor * factor, noise * noise)
+
+
+@kernel
+def extrapolate(step):
+    """Extrapolate the rates at the corrected state; return whether this is within their noise."""
+    part, noise = 0.0, 0.0
+    for i in range(step.shape[1]):
+        moved = step[X_STAR, i] - step[X, i]
+        back = step[X_END, i] - step[X_STAR, i]
+        if back != 0:
+            part = max(part, abs(back / moved) if moved != 0 else np.inf)
+        noise = max(noise, step[NOISE, i])
+    if noise == 0:
+        return False
+    for i in range(step.shape[1]):
+        moved = step[X_STAR, i] - step[X, i]
+        turn = step[RATE_STAR, i] - step[RATE, i]
+        if turn != 0 and not abs(turn) * part <= step[NOISE, i]:
+            return False
+        back = (step[X_END, i] - step[X_STAR, i]) / moved if moved != 0 else 0.0
+        step[RATE_END, i] = fma(turn, back, step[RATE_STAR, i])
+    return True
 
 
 def stepper(coordinates: Callable[..., None]) -> Stepper:

@@ -40,6 +40,7 @@ from models.numerics.slow_step import (
     V,
     X,
     accumulate,
+    extrapolate,
     stepper,
 )
 
@@ -342,18 +343,19 @@ def integrator(
                 step[NOISE],
             )
             correct(step, t, span, state, p)
-            fill_rates(
-                step[V_END],
-                step[X_END],
-                t + span,
-                state,
-                p,
-                is_open,
-                level,
-                held,
-                step[RATE_END],
-                step[NOISE],
-            )
+            if not extrapolate(step):
+                fill_rates(
+                    step[V_END],
+                    step[X_END],
+                    t + span,
+                    state,
+                    p,
+                    is_open,
+                    level,
+                    held,
+                    step[RATE_END],
+                    step[NOISE],
+                )
             worst = judge(step, t, span, span_before, state, p, accuracy, floor)
             if not worst <= 1:
                 if not (math.isfinite(worst) and span > 0):

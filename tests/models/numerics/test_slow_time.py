@@ -19,12 +19,12 @@ from models.numerics.slow_time import (
 S_INF, AGEING = 1.14e-16, 2.44e-8
 FIRST = 1e-13 * 5e-3**1.2
 
-AGED, MIXED, SEQUENCE, CLOSING, NOISY = range(5)
+AGED, MIXED, SEQUENCE, CLOSING, NOISY, RANDOM = range(6)
 
 
 @kernel
 def _coordinates(v, t, state, p, x):
-    kind, closes, _ = p
+    kind, closes, _, _ = p
     x[0] = 1.0 + v[0]
     if kind == CLOSING:
         x[0] -= closes * t
@@ -32,7 +32,7 @@ def _coordinates(v, t, state, p, x):
 
 @kernel
 def _rates(v, x, t, state, p, rate, noise):
-    kind, share, period = p
+    kind, share, _, draws = p
     rate[0] = 0.5
     if kind == AGED:
         rate[0] = S_INF / FIRST + (1 - S_INF / FIRST) * math.exp(-AGEING * t)
@@ -42,6 +42,10 @@ def _rates(v, x, t, state, p, rate, noise):
         rate[0] = 3.0 if state % 2 == 0 else 1.0
     elif kind == NOISY:
         noise[0] = 0.1
+    elif kind == RANDOM:
+        draws[0] += 1
+        rate[0] = (1 + v[0]) * (1 + 0.1 * draws[int(draws[0])])
+        noise[0] = 0.1 * (1 + v[0])
 
 
 @kernel
@@ -51,7 +55,7 @@ def _marks(v, x, t, p, mark):
 
 @kernel
 def _ends(state, p):
-    kind, share, _ = p
+    kind, share, _, _ = p
     if kind != SEQUENCE:
         return np.inf
     return state // 2 + (share if state % 2 == 0 else 1.0)
@@ -77,11 +81,12 @@ def _run(end, p, accuracy, budget, v, fate, times, errors):
     return _integrate(0.0, end, v, p, accuracy, floor, budget, fate, times, errors, instants, seen)
 
 
-def run(kind, share=0.0, goal=1.0, accuracy=0.05, end=1e12, budget=100_000):
+def run(kind, share=0.0, goal=1.0, accuracy=0.05, end=1e12, budget=100_000, draws=None):
     """Return how a run ended, its quantity, and the fate, time and error of its event."""
     v, fate = np.zeros(1), np.zeros(1, np.int8)
     times, errors = np.empty((2, 1))
-    ended = _run(end, (kind, share, goal), accuracy, budget, v, fate, times, errors)
+    draws = np.zeros(1) if draws is None else draws
+    ended = _run(end, (kind, share, goal, draws), accuracy, budget, v, fate, times, errors)
     return ended, v[0], fate[0], times[0], errors[0]
 
 
@@ -125,6 +130,19 @@ def test_noise_of_a_rate_is_in_the_error_of_a_time():
     assert (fate, time) == (REACHED, pytest.approx(100.0, rel=1e-12))
     assert 0 < error < 1.645 * 0.1 * time / 0.5
     assert run(MIXED, goal=50.0)[4] == 0
+
+
+def test_noisy_rates_are_asked_for_once_a_step_and_errors_cover_nine_in_ten():
+    """dV/dt = 1 + V, each rate with 10 % noise: T = ln(1 + V)."""
+    rng = np.random.default_rng(7)
+    known_time, within, asked, steps = math.log(6.0), 0, 0.0, 0
+    for _ in range(400):
+        draws = np.concatenate([[0.0], rng.normal(size=999)])
+        ended, *_, time, error = run(RANDOM, goal=5.0, accuracy=0.3, draws=draws)
+        within += abs(time - known_time) <= error
+        asked, steps = asked + draws[0], steps + ended.steps
+    assert 0.86 <= within / 400 <= 0.97
+    assert asked < 1.5 * steps
 
 
 def test_an_event_beyond_the_end_or_the_steps_is_pending():
