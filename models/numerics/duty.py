@@ -38,7 +38,10 @@ def _number(
 
 
 def duty_numbers(
-    tables: Sequence[Sequence[tuple[str, str | float]]], order: str, factors: Sequence[str]
+    tables: Sequence[Sequence[tuple[str, str | float]]],
+    order: str,
+    factors: Sequence[str],
+    has_gaps: bool = True,
 ) -> NDArray[np.float64]:
     """Return the duty that a study states, as numbers.
 
@@ -51,6 +54,8 @@ def duty_numbers(
         One of `ORDERS`.
     factors : sequence of str
         Names of a machine's factors.
+    has_gaps : bool
+        Whether the machine has gaps, which may have an offset.
 
     Returns
     -------
@@ -74,10 +79,11 @@ def duty_numbers(
         names.append(name)
         row = [_number(name, given, time, (0.0, longest), np.nan)]
         row.append(_number(name, given, "wear", (0.0, _LARGEST), 1.0))
-        row.append(_number(name, given, "gap_offset", (-_OFFSET, _OFFSET), 0.0))
+        offset = given if has_gaps else {}
+        row.append(_number(name, offset, "gap_offset", (-_OFFSET, _OFFSET), 0.0))
         row += [_number(name, given, factor, (0.0, _LARGEST), 1.0) for factor in factors]
         if given:
-            allowed = ["name", time, "wear", "gap_offset", *factors]
+            allowed = ["name", time, "wear", *["gap_offset"] * has_gaps, *factors]
             owner = f"duty state '{name}', in order '{order}',"
             raise ValueError(no_such_key(owner, min(given), allowed))
         rows.append(row)

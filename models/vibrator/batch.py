@@ -1,15 +1,18 @@
 """From rows of parameters to disphasing angles, start-up and regimes."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.duty import FACTORS as FIRST_FACTOR
+from models.numerics.duty import TIME, WEAR, duty_numbers
 from models.vibrator.lanes.machines import follows, is_rigid
-from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.parameters import FACTORS, Params, Rows, Settings
 from models.vibrator.run_down import run_downs
-from models.vibrator.service.life import angles_in_service, lives
+from models.vibrator.service.life import Lives, angles_in_service, lives
 from models.vibrator.start import exact, fast
 from models.vibrator.start.regimes import Outcome, wrapped
 from models.vibrator.theory import averaged
@@ -36,17 +39,7 @@ def batch(
     status : ndarray of int8, shape (n,)
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
-    in_lanes = settings.propagator == "fast"
-    quick, rigid = follows(p, settings) & in_lanes, is_rigid(p, settings) & in_lanes
-    outcome, status = (
-        Outcome.nothing(len(x), len(settings.instants)),
-        np.full(len(x), Status.OK, np.int8),
-    )
-    _run(fast.outcomes, p, np.flatnonzero(quick), settings, outcome, status)
-    # The exact propagator also follows machines too stiff for fixed steps.
-    stiff = status == Status.NON_FINITE
-    slow, rigid = ~quick | stiff, rigid & ~stiff
-    _run(exact.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
+    outcome, status, rigid = _outcomes(p, settings)
     outputs = {
         "disphasing_angle": outcome.disphasing,
         "theory_disphasing_angle": _theory_angle(p),
@@ -63,7 +56,10 @@ def batch(
         "regime": outcome.regime,
     }
     seen = outcome.regime, outcome.disphasing, status == Status.OUT_OF_BUDGET
-    life = lives(p, seed, *seen, rigid, settings)
+    if settings.duty:
+        life, settings = _lives_in_duty(p, seed, settings)
+    else:
+        life = lives(p, seed, *seen, rigid, settings)
     outputs |= {
         "time_to_disphasing": life.time,
         "time_to_disphasing_censored": life.censored,
@@ -79,6 +75,48 @@ def batch(
     if settings.run_down_phases:
         outputs |= run_downs(p, *seen[:2], outcome.speed, rigid, settings)
     return outputs, status
+
+
+def _outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8], NDArray[np.bool_]]:
+    """Return the starts of n machines, their status, and which of them lanes can follow."""
+    n, in_lanes = len(p.body_mass), settings.propagator == "fast"
+    quick, rigid = follows(p, settings) & in_lanes, is_rigid(p, settings) & in_lanes
+    outcome = Outcome.nothing(n, len(settings.instants))
+    status = np.full(n, Status.OK, np.int8)
+    _run(fast.outcomes, p, np.flatnonzero(quick), settings, outcome, status)
+    # The exact propagator also follows machines too stiff for fixed steps.
+    stiff = status == Status.NON_FINITE
+    _run(exact.outcomes, p, np.flatnonzero(~quick | stiff), settings, outcome, status)
+    return outcome, status, rigid & ~stiff
+
+
+def _lives_in_duty(p: Rows, seed: NDArray[np.uint64], settings: Settings) -> tuple[Lives, Settings]:
+    """Return the lives of n machines in mixed duty, and the settings in time of operation.
+
+    Ageing does not depend on the feed: a life ends in the state of duty that ends it first.
+    """
+    duty = duty_numbers(settings.duty, "mixed", FACTORS, has_gaps=False)
+    runs = duty[(duty[:, TIME] > 0) & (duty[:, WEAR] > 0)]
+    pace = float((runs[:, TIME] * runs[:, WEAR]).sum())
+    operated = replace(
+        settings,
+        horizon=pace * settings.horizon,
+        service_times=tuple(pace * time for time in settings.service_times),
+    )
+    in_states = []
+    for state in np.unique(runs[:, FIRST_FACTOR:], axis=0):
+        q = p._replace(**{name: getattr(p, name) * state[i] for i, name in enumerate(FACTORS)})
+        outcome, status, rigid = _outcomes(q, replace(operated, instants=()))
+        seen = outcome.regime, outcome.disphasing, status == Status.OUT_OF_BUDGET
+        in_states.append(lives(q, seed, *seen, rigid, operated))
+    every = Lives(*(np.stack(fields) for fields in zip(*in_states, strict=True)))
+    order = np.lexsort((every.censored, every.time), axis=0)  # NaN is last
+    first = order[0], np.arange(len(seed))
+    life = Lives(*(field[first] for field in every))
+    unknown = np.isnan(every.time).any(axis=0)
+    life.time[unknown] = life.error[unknown] = np.nan
+    life.censored[unknown], life.cause[unknown] = False, -1
+    return life._replace(time=life.time / pace, error=life.error / pace), operated
 
 
 def theory_batch(

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import inf, pi
 from typing import Annotated, Any, Literal, NamedTuple
 
-from uq.contract import Output, Parameter, Setting
+from uq.contract import Output, Parameter, Setting, Table
 
 PAPER = "Michalczyk & Cieplok 2014"
 GIVEN, INFERRED = f"{PAPER}: given", f"{PAPER}: inferred"
@@ -166,6 +166,9 @@ class Params(NamedTuple):
 # fmt: on
 
 
+FACTORS = ("feed_mass", "feed_position")
+"""Parameters that a state of duty multiplies."""
+
 Rows = Any
 """n machines at once: a `Params` whose fields are arrays of shape (n,)."""
 
@@ -242,6 +245,14 @@ class Settings:
             optional=True,
         ),
     ] = ()
+    duty: Annotated[
+        tuple[Table, ...],
+        Setting(
+            "states of operation that a life counts: name, share of the time, wear (factor of the"
+            " ageing), factors feed_mass and feed_position",
+            optional=True,
+        ),
+    ] = ()
     body_points: Annotated[
         tuple[tuple[float, float], ...],
         Setting(
@@ -264,6 +275,12 @@ class Settings:
         phases = self.run_down_phases
         if any(b <= a for a, b in zip(phases, phases[1:], strict=False)):
             raise ValueError("run_down_phases must be a list of increasing numbers")
+        if self.duty:
+            from models.numerics.duty import TIME, WEAR, duty_numbers  # imports numba
+
+            duty = duty_numbers(self.duty, "mixed", FACTORS, has_gaps=False)
+            if not (duty[:, TIME] * duty[:, WEAR] > 0).any():
+                raise ValueError("a duty state must have a positive share and wear")
 
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:

@@ -308,3 +308,56 @@ def test_an_angle_in_service_is_undefined_where_motors_never_lock():
     out = compute(p, (0, 1), replace(SETTINGS, service_times=(1e7,)))
     np.testing.assert_array_equal(np.isnan(out["service_angle"][:, 0]), [False, True])
     assert out["service_angle"][0, 0] == out["disphasing_angle"][0]
+
+
+def states(*tables):
+    return replace(limited(0.2), duty=tuple(tuple(table.items()) for table in tables))
+
+
+AGEING = Params(
+    ageing_time_1=3e7, feed_mass=40.0, feed_position=0.5, damping_ratio=0.07, throw_coefficient=0.5
+)
+"""A feed that rides on the deck, away from the mass centre."""
+
+
+def test_in_duty_a_machine_ages_while_it_runs_and_ends_in_the_state_that_ends_it_first():
+    empty, full = (
+        life(AGEING._replace(feed_mass=mass), settings=limited(0.2)) for mass in (0.0, 80.0)
+    )
+    assert empty[2] == full[2] == "angle" and empty[0] != pytest.approx(full[0], rel=1e-3)
+    off = {"name": "off", "share": 0.3, "wear": 0.0, "feed_mass": 50.0}
+    half = life(AGEING, settings=states({"share": 0.5, "feed_mass": 0.0}, off))
+    assert half[2] == "angle" and half[0] == pytest.approx(2 * empty[0], rel=1e-7)
+    assert 0 < half[1] < 1e-5 * half[0]
+    for pace, wear in ((0.75, 1.0), (1.75, 3.0)):
+        thin = {"name": "thin", "share": 0.5, "feed_mass": 0.0, "wear": wear}
+        mixed = life(AGEING, settings=states(thin, {"share": 0.25, "feed_mass": 2.0}))
+        assert mixed[0] == pytest.approx(min(empty[0], full[0]) / pace, rel=1e-7)
+    nominal = life(AGEING, settings=limited(0.2))
+    assert life(AGEING, settings=states({"share": 1.0})) == nominal
+
+
+def test_in_duty_times_in_service_are_those_of_the_calendar():
+    p = SOFT._replace(ageing_time_1=3e7)
+    times = replace(SETTINGS, service_times=(1e7, 2e7))
+    duty = replace(states({"share": 0.5}), service_times=(2e7, 4e7))
+    angles, again = (compute(p, settings=settings)["service_angle"] for settings in (times, duty))
+    np.testing.assert_array_equal(angles, again)
+    censored = compute(p, settings=replace(duty, horizon=1e7))
+    assert censored["time_to_disphasing_censored"].all()
+    assert censored["time_to_disphasing"] == 1e7
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        (({"share": 0.7}, {"share": 0.4}), "sum to 1.1, more than 1"),
+        (({"share": 0.7, "gap_offset": 1e-5},), "has no 'gap_offset'"),
+        (({"share": 0.7, "feed_mas": 2.0},), "did you mean 'feed_mass'"),
+        (({"share": 0.7, "wear": 0.0}, {"share": 0.0}), "must have a positive share and wear"),
+    ],
+)
+def test_a_duty_that_makes_no_sense_is_refused_in_one_line(tables, words):
+    with pytest.raises(ValueError) as caught:
+        states(*tables)
+    assert words in str(caught.value) and "\n" not in str(caught.value)
