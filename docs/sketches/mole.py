@@ -3,7 +3,7 @@
 from .sheet import BODY, CARD, INK, MOVES, PALE, WEARS, Sheet
 
 GROUND, FLOOR, ROOF = 30.0, 42.0, 92.0  # the cavity is between floor and roof
-REAR, FRONT, NOSE = 20.0, 242.0, 284.0
+REAR, FRONT, NOSE = 20.0, 222.0, 250.0
 COIL = (118.0, 206.0)
 BAR = (92.0, 160.0, 55.0, 79.0)  # left, right, low, high
 STOP = 186.0
@@ -26,6 +26,7 @@ def mole() -> Sheet:
             ("$k_0,\\ G$", "stop: stiffness, place"),
             ("$k_1,\\ X_0,\\ c$", "spring and damper of the bar"),
             (r"$\mu_1,\ \mu_2$", "dry friction of bar and mole"),
+            ("$k_s,\\ F_0$", "soil: stiffness, force at which it yields"),
         ]
     )
     return sheet
@@ -41,10 +42,15 @@ def _case(sheet: Sheet) -> None:
     for x in range(int(COIL[0]), int(COIL[1]) + 1, 8):
         for y in (GROUND + 6, ROOF + 6):
             sheet.disc((x, y), 3.2, fill=WEARS)
-    sheet.text((FRONT + 21, (low + high) / 2), "$m_2$")
+    middle = (low + high) / 2
+    sheet.text((FRONT + 15, middle), "$m_2$")
     sheet.text((FRONT + 28, GROUND - 13), r"$\mu_2$")
     sheet.arrow((FRONT + 14, high + 6), (FRONT + 44, high + 6))
     sheet.text((FRONT + 29, high + 16), "$w$", colour=MOVES)
+    sheet.spring((NOSE, middle), (NOSE + 26, middle), turns=4, wide=4)
+    sheet.box(NOSE + 26, middle - 12, NOSE + 36, middle + 12, fill=PALE)
+    sheet.text((NOSE + 14, middle + 14), "$k_s$")
+    sheet.text((NOSE + 32, middle + 21), "$F_0$")
 
 
 def _inside(sheet: Sheet) -> None:
@@ -67,7 +73,7 @@ def _inside(sheet: Sheet) -> None:
     middle = (low + high) / 2
     sheet.box(STOP, middle - 10, STOP + 6, middle + 10, fill=INK)
     sheet.spring((STOP + 6, middle), (FRONT, middle), turns=4, wide=4)
-    sheet.text((STOP + 32, middle + 14), "$k_0$")
+    sheet.text((STOP + 22, middle + 14), "$k_0$")
     sheet.text((STOP + 3, middle - 18), "$G$")
     sheet.arrow((right - 22, high + 6), (right + 8, high + 6))
     sheet.text((right + 15, high + 6), "$u$", colour=MOVES)

@@ -28,7 +28,8 @@ def vibrator() -> Sheet:
             (r"$M_k,\ J_{Ck}$", "mass and inertia of the body"),
             (r"$\xi,\ \beta$", "working axis and its angle"),
             (r"$D,\ \gamma$", "places of the shafts"),
-            (r"$k_x,\ k_y$", "stiffness of the springs (totals)"),
+            (r"$k_x,\ k_y$", "stiffness of the springs, both sides"),
+            (r"$\kappa$", "(right $-$ left) of these, over their sum"),
             (r"$l,\ h$", "places of the springs"),
         ]
     )
@@ -71,8 +72,9 @@ def _supports(sheet: Sheet) -> None:
         sheet.wall((at + side * 36, foot - 10), (at + side * 36, foot + 10), (side, 0))
         sheet.wall((at - 16, GROUND), (at + 16, GROUND), (0, -1))
         sheet.disc((at, foot), 2.2, fill=INK)
-        sheet.text((at - side * 20, (foot + GROUND) / 2), "$k_y/2$")
-        sheet.text((at + side * 19, foot - 15), "$k_x/2$")
+        name = "R" if side > 0 else "L"
+        sheet.text((at - side * 20, (foot + GROUND) / 2), f"$k_{{y{name}}}$")
+        sheet.text((at + side * 19, foot - 15), f"$k_{{x{name}}}$")
     low = foot - 2
     sheet.line((x, y - 16), (x, low - 6), colour=PALE, width=0.7, dashes="-.")
     sheet.dimension((x, low), (x + SPACING - 3, low), "$l$", (x + SPACING / 2, low + 8))
