@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq.contract import Again, Batch, Kept, Model, censored_name
 from uq.errors import InputError
+from uq.execution.disk_store import by_settings
 from uq.execution.recomputed_row import study_here
 from uq.result import result_file
 from uq.result.result import AnyResult, Result
@@ -57,6 +58,10 @@ def recompute(result: AnyResult, changes: Mapping[str, Any]) -> xr.Dataset:
     if difference:
         raise InputError(
             f"{source}: was computed with another model ({difference}): run its study again"
+        )
+    if any(settings and rows.any() for settings, rows in by_settings(ds)):
+        raise InputError(
+            f"{source}: rows of it were rerun with other settings: change the study, and run that"
         )
     study = studied.with_changes(changes)
     before, rows = row_block(studied, 0, n), row_block(study, 0, n)

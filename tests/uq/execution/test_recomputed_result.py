@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import uq as api
 from uq.errors import InputError
@@ -95,6 +96,13 @@ def test_depths_that_the_result_has_not_are_named(rods, uq):
     assert ended.code == 0, ended.err
     assert "first_time_to_depth[depth=1e-05]: not in the result as studied" in ended.out
     assert "first_time_to_depth[depth=2e-05] [" in ended.out
+
+
+def test_rows_rerun_with_other_settings_are_refused_in_one_line(rods):
+    rerun = xr.DataArray([0, 1, 0], dims="row", attrs={"changed_1": "{accuracy = 0.01}"})
+    with pytest.raises(InputError, match="rerun with other settings") as caught:
+        api.recompute(api.open_result(rods).assign(rerun=rerun), {"settings.scar": "flat-bar"})
+    assert str(caught.value).count("\n") == 0
 
 
 @pytest.mark.parametrize(
