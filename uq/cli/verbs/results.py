@@ -348,12 +348,13 @@ def what_if(
         Path | None,
         typer.Option("-o", "--output", metavar="NEW.nc", help="Keep rows computed again."),
     ] = None,
+    full: given.Full = False,
     json: given.Json = False,
 ) -> None:
     """Show what other laws of inputs or settings would change."""
     from uq.cli import what_if as question
 
-    question.what_if(result, set_, output, json)
+    question.what_if(result, set_, output, json, full)
 
 
 def twin(
