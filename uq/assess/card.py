@@ -11,6 +11,7 @@ import numpy as np
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.rankings import Ranking
 from uq.assess.answer.sufficiency import rounded_size
 from uq.assess.answer.tightening import halvings, tightened
@@ -27,7 +28,7 @@ from uq.assess.answer.wording import (
     tied_to,
     without_source,
 )
-from uq.assess.card_numbers import Headline, headlines
+from uq.assess.card_numbers import Headline, bound_name, headlines
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.contract import Status
@@ -43,6 +44,8 @@ MOST_NAMED = 2
 """Of more fixed values without a source, their number is given."""
 STUDY = "study"
 """Begins the advice on the number of rows."""
+DEPENDENT = "are not independent"
+"""Ends the reason for no bound of dependent rows."""
 
 
 class LeadingInput(NamedTuple):
@@ -85,6 +88,12 @@ class Card:
     rows, failed : int
     row_name : tuple of str
         Singular and plural of what a row represents.
+    size : str
+        Number of these, and of rows where they differ: ``2 048 rods in 13 312 rows``.
+    more_rows : str
+        Why they differ, or "".
+    no_bound : str
+        Reason why there is a quantile in place of a bound, or "".
     headline : tuple of Headline
     assumed : tuple of str
         Assumed inputs to which every life is proportional.
@@ -118,6 +127,9 @@ class Card:
     rows: int
     failed: int
     row_name: tuple[str, str]
+    size: str = ""
+    more_rows: str = ""
+    no_bound: str = ""
     headline: tuple[Headline, ...] = ()
     assumed: tuple[str, ...] = ()
     assumptions: str = ""
@@ -176,6 +188,9 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         answer.rows,
         answer.failed,
         result.row_name,
+        _size(result),
+        "" if (no_bound := _why_no_bound(result, lead)) else _why_more_rows(result),
+        no_bound,
         tuple(headlines(findings, answer)),
         () if lead is None else lead.scaled_by,
         _assumptions(result, assumed_causes),
@@ -196,6 +211,48 @@ def _subject(findings: Findings, answer: Answer) -> str:
     if answer.regimes_first:
         return capitalized(readable(str(findings.result.dataset[REGIME].attrs["long_name"])))
     return "" if answer.lead is None else capitalized(answer.lead.words)
+
+
+def _counts(result: Result) -> tuple[int, int, int]:
+    """Return the numbers of what rows represent, of runs of each, and of rows that are no copy."""
+    repeats = result.nesting.repeats
+    drawn = len(result.independent) if result.design.crossed else len(result)
+    return drawn // repeats, repeats, drawn
+
+
+def _size(result: Result) -> str:
+    """Return the number of what rows represent, and of rows where they differ."""
+    count, *_ = _counts(result)
+    rows = len(result)
+    if count in (0, rows):
+        return counted(rows, *result.row_name)
+    return f"{counted(count, *result.row_name)} in {counted(rows, 'row')}"
+
+
+def _why_more_rows(result: Result) -> str:
+    """Return why there are more rows than what they represent; "" if there are not."""
+    count, repeats, drawn = _counts(result)
+    if count in (0, len(result)):
+        return ""
+    clauses = ["copies with other values of some inputs"] * (drawn < len(result))
+    clauses += [f"{repeats} runs of each {result.row_name[0]}"] * (repeats > 1)
+    names = counted(count, *result.row_name)
+    return f"{grouped(len(result))} rows: {names}, {', '.join(clauses)}"
+
+
+def _why_no_bound(result: Result, lead: Quantity | None) -> str:
+    """Return why there is a quantile in place of a bound; "" with a bound, or if none is asked."""
+    if lead is None or lead.tolerance_bound is None or not lead.tolerance_bound.reason:
+        return ""
+    if lead.events and not lead.is_life and result.analysis.tolerance is None:
+        return ""
+    reason, (count, repeats, drawn) = lead.tolerance_bound.reason, _counts(result)
+    if reason.endswith(DEPENDENT) and drawn < len(result):
+        names = counted(count, *result.row_name)
+        reason = f"'{result.design_name}' rows ({names} and copies) {DEPENDENT}"
+    elif reason.endswith(DEPENDENT) and repeats > 1:
+        reason = f"the {repeats} runs of each {result.row_name[0]} {DEPENDENT}"
+    return f"no {bound_name(result, lead, lead.tolerance_bound)}: {reason}"
 
 
 def _share_of(ranking: Ranking, is_life: bool) -> str:
@@ -368,7 +425,7 @@ def _more_rows(result: Result, rows: int) -> str:
     rows, samples = rounded_size(rows, result)
     if samples == rows:
         return f"{STUDY} about {rows_in_words(rows)} {result.row_name[1]} in all"
-    return f"{STUDY} {grouped(rows)} {result.row_name[1]} in all (set samples = {samples})"
+    return f"{STUDY} {grouped(rows)} rows in all (set samples = {samples})"
 
 
 def statistic_name(tolerance: TighterTolerance) -> str:

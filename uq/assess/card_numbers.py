@@ -11,6 +11,7 @@ from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.tolerance_bound import ToleranceBound, noun_of
 from uq.assess.answer.wording import DisplayUnit
 from uq.assess.findings import Findings
+from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
@@ -112,8 +113,7 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
         return key_of("quantities", quantity.name, "promise", name, verb="answer")
 
     covered, confidence = 100 * tolerance_bound.coverage, 100 * tolerance_bound.confidence
-    ends_well = bool(findings.result.outputs[quantity.output].success)
-    name = f"{covered:g}/{confidence:g} {'life' if quantity.is_life and not ends_well else 'bound'}"
+    name = bound_name(findings.result, quantity, tolerance_bound)
     bounds = {"lower": (tolerance_bound.lower, -inf), "upper": (tolerance_bound.upper, inf)}
     both = isfinite(tolerance_bound.lower) and isfinite(tolerance_bound.upper)
     for side, (bound, towards) in bounds.items():
@@ -143,6 +143,13 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
             )
             yield line
             yield from _with_errors(quantity, line, side)
+
+
+def bound_name(result: Result, quantity: Quantity, tolerance_bound: ToleranceBound) -> str:
+    """Return the name of a bound: ``95/95 life``."""
+    covered, confidence = 100 * tolerance_bound.coverage, 100 * tolerance_bound.confidence
+    is_life = quantity.is_life and not result.outputs[quantity.output].success
+    return f"{covered:g}/{confidence:g} {'life' if is_life else 'bound'}"
 
 
 def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Headline]:

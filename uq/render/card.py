@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from math import isnan
 from textwrap import wrap
 from typing import NamedTuple
@@ -16,11 +17,11 @@ from uq.assess.card import STUDY, Card, LeadingInput, card_of, statistic_name
 from uq.assess.card_numbers import WITH_ERRORS, Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
-from uq.text.numbers import TO_THESE_DIGITS, counted, percent, percent_interval, printed
+from uq.text.numbers import TO_THESE_DIGITS, grouped, percent, percent_interval, printed
 from uq.text.units import beside
 
 WIDTH = 80
-SHORT = 13
+SHORT = 14
 """A card with no more lines has no blank ones and no headers of columns."""
 
 _HEADERS = {
@@ -130,9 +131,13 @@ def _lines_of(card: Card) -> list[Line]:
         return short
     counts = range(len(card.causes), max(len(card.causes) - 3, 0), -1)
     bare = replace(card, not_halved="")
-    fewer = ((replace(bare, causes=card.causes[:count]), False) for count in counts)
-    for shown, is_cut in ((card, False), *fewer, (bare, True)):
+    fewer = [replace(bare, causes=card.causes[:count]) for count in counts]
+    variants = [(shown, False) for shown in (card, *fewer, *fewer[-1:])]
+    for i, (shown, is_cut) in enumerate((*variants, (bare, True))):
         blocks = [block for block in _blocks(shown, is_short=False, is_cut=is_cut) if block]
+        if i == len(variants) - 1:  # no line between the main numbers and the others
+            at = 2 if card.indices_first else 1
+            blocks[at : at + 2] = [[*chain(*blocks[at : at + 2])]]
         lines = [line for block in blocks for line in (Line(""), *block)][1:]
         lines = _with_commands(lines)
         if len(lines) <= _MOST:
@@ -148,12 +153,15 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
         (line for line in (*leading, *others) if interval_of(line) and not line.note), None
     )
     main, table = ([*_headlines(lines, card, first, is_short)] for lines in (leading, others))
-    main += warning
+    lacking = [Line(_cut(printed(f"  {card.no_bound}"), WIDTH))] if card.no_bound else []
+    main += [*([] if card.besides else lacking), *warning]
     if card.besides and table:
+        table += lacking
         table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
     doubts = filter(None, ("" if warning else card.assumptions, card.sources))
     assumed = _labelled("!", tuple(doubts))
     causes = [*_causes(card, is_short=is_short, is_cut=is_cut), *_not_halved(card)]
+    causes += [Line(_cut(printed(f"  {card.more_rows}"), WIDTH))] if card.more_rows else []
     return [
         [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],
         *([causes, main, table] if card.indices_first else [main, table, causes]),
@@ -166,8 +174,12 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
 
 
 def _title(card: Card) -> Line:
-    rows = f"{counted(card.rows, *card.row_name)}, {counted(card.failed, 'invalid row')}"
-    text = _beside(f"{card.name}   {rows}", f"{card.model}, {card.design}")
+    """Return the first line; a long one has less space after the name."""
+    noun = "" if " in " in card.size else " row" if card.failed == 1 else " rows"
+    invalid = f"{grouped(card.failed)} invalid{noun}"
+    model, rows = f"{card.model}, {card.design}", f"{card.size}, {invalid}"
+    texts = (_beside(f"{card.name}{' ' * gap}{rows}", model) for gap in (3, 2))
+    text = next((text for text in texts if text.endswith(model)), f"{card.name}   {rows}")
     return Line(text, (0, len(card.name)))
 
 
