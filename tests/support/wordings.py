@@ -122,7 +122,7 @@ STUDY_FAULTS = [
     ({"uncertain": {"x3": 1.0}}, "uncertain.x3 = 1.0: must be a table"),
     (
         {"uncertain": {"x3": {"lower": 0, "upper": 1}}},
-        f"[uncertain.x3] distribution: is missing (one of {', '.join(LAWS)}",
+        f"[uncertain.x3] distribution: is missing (allowed: {', '.join(LAWS)}",
     ),
     (
         {"uncertain": {"x3": {"distribution": "unifrom", "lower": 0, "upper": 1}}},
