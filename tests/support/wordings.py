@@ -292,7 +292,7 @@ MISTAKES = {
     "row absent.nc many": "uq: Invalid value for 'N': ",
     "row absent.nc --near-quantile 0.05": "uq: Option '--near-quantile' requires 2 arguments",
     "summary small.toml": (
-        "small.toml: not a readable netCDF file; 'uq run small.toml' computes the result of a study"
+        "small.toml: is a study, not a result; 'uq run small.toml' computes its result"
     ),
     "sensitivity folder": "folder: is a folder, not a result",
     "plot absent.nc": "absent.nc: no such file",
