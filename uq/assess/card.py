@@ -34,7 +34,9 @@ from uq.assess.summary import REGIME
 from uq.contract import Status
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PLAIN
+from uq.sampling.levels import CHANCE
 from uq.stats import estimate_json
+from uq.stats.estimate import Estimate
 from uq.study.file import Tied
 from uq.text.numbers import capitalized, counted, grouped, percent, rows_in_words
 from uq.text.units import readable
@@ -104,6 +106,9 @@ class Card:
     sources : str
         Laws of few values, and fixed values without a source; "" for none.
     causes : tuple of LeadingInput
+    levels : tuple of tuple
+        Of a study of regimes that chance decides: what varies between runs, and between machines,
+        in words, with its share of the variance.
     index : str
         Key of the index of the causes: ``S1``.
     share_of : str
@@ -136,6 +141,7 @@ class Card:
     assumed_causes: tuple[str, ...] = ()
     sources: str = ""
     causes: tuple[LeadingInput, ...] = ()
+    levels: tuple[tuple[str, Estimate], ...] = ()
     index: str = ""
     share_of: str = ""
     indices_first: bool = False
@@ -197,6 +203,7 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         assumed_causes,
         _sources(result),
         causes,
+        _levels(answer),
         "" if ranking is None else ranking.kind,
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
@@ -295,9 +302,18 @@ def _sources(result: Result) -> str:
 def _ranking(answer: Answer) -> Ranking | None:
     """Return the ranking of the subject of the study."""
     if answer.regimes_first:
-        causes = (regime.ranking for regime in answer.regime_causes)
+        about = answer.regimes[:1] if _levels(answer) else answer.regime_causes
+        causes = (regime.ranking for regime in about)
         return next((ranking for ranking in causes if ranking is not None), None)
     return None if answer.lead is None else answer.lead.ranking
+
+
+def _levels(answer: Answer) -> tuple[tuple[str, Estimate], ...]:
+    """Return the variance components of the most frequent regime, if chance leads."""
+    leader = None if answer.levels is None else answer.levels.leader
+    if answer.levels is None or leader is None or leader.name != CHANCE or not answer.regimes_first:
+        return ()
+    return tuple((f"{level.words}, in all", level.share) for level in answer.levels.levels)
 
 
 def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator[LeadingInput]:
@@ -416,6 +432,9 @@ def _chance(answer: Answer) -> str:
     leader = None if answer.levels is None else answer.levels.leader
     if answer.levels is None or leader is None:
         return "chance decides"
+    if answer.regimes_first:  # the card has the shares
+        others = " and ".join(level.words for level in answer.levels.levels[1:])
+        return f"{leader.words} matter{'s' * leader.explains.endswith('s')} more than {others}"
     share = f"{percent(leader.share.value)} of {answer.levels.variance}"
     return f"{leader.words} {leader.explains} {share}"
 

@@ -15,6 +15,7 @@ from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
+from uq.text.numbers import percent
 
 MOST_REGIMES = 4
 WITH_ERRORS = " with numerical errors"
@@ -59,6 +60,11 @@ class Headline:
         return self.shown is not None and isnan(self.estimate.value)
 
     @property
+    def is_open(self) -> bool:
+        """Whether it is a probability known to lie in a range alone."""
+        return self.shown is None and isnan(self.estimate.value)
+
+    @property
     def json(self) -> dict[str, Any]:
         """Key, label, numbers and unit."""
         numbers = estimate_json.numbers(self.estimate)
@@ -83,8 +89,11 @@ def headlines(findings: Findings, answer: Answer) -> Iterator[Headline]:
     events = [_of_event(lead, event) for event in lead.events if isfinite(event.share.value)]
     bounds = [*_of_bounds(findings, lead)]
     others = [*_of_range(findings, lead)]
-    lines = [*bounds, *others, *events] if lead.is_life else [*events, *bounds, *others]
-    for line in lines:
+    leads = bool(bounds) or not events
+    if lead.is_life and not leads:  # neither a bound nor its quantile: the events answer
+        events = [replace(line, leads=True) for line in events]
+    first = [*bounds, *others, *events] if lead.is_life and leads else [*events, *bounds, *others]
+    for line in first:
         yield replace(line, leads=line.leads and not answer.regimes_first)
 
 
@@ -172,6 +181,15 @@ def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Head
     )
 
 
+def _undecided(findings: Findings, quantity: Quantity) -> str:
+    """Return the share of rows that may still end after the time studied."""
+    described = findings.summary.outputs.get(quantity.name)
+    censored = None if described is None else described.find("censored")
+    if censored is None or not len(findings.rows):
+        return ""
+    return f"{percent(censored.estimate.value / len(findings.rows))} undecided"
+
+
 def _failed_of_median(findings: Findings, quantity: Quantity) -> Estimate | None:
     """Return the bounds of the median with invalid rows at best and at worst; None without any."""
     described = findings.summary.outputs.get(quantity.name)
@@ -210,7 +228,8 @@ def _of_range(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
     if isfinite(low) and isfinite(high):
         yield Headline(key("low"), "90 % between", Estimate(nan, low, high), unit, shown)
     if likely.never.value > 0 or likely.never.low > 0:
-        yield Headline(key("never"), f"never {likely.ends}", likely.never, "1", None)
+        ended = Headline(key("never"), f"never {likely.ends}", likely.never, "1", None)
+        yield replace(ended, note=_undecided(findings, quantity) if ended.is_open else "")
     described = findings.summary.outputs.get(quantity.name) if likely.of_magnitude else None
     mean = None if described is None else described.find("mean")
     if mean is not None:

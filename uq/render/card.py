@@ -17,6 +17,7 @@ from uq.assess.card import STUDY, Card, LeadingInput, card_of, statistic_name
 from uq.assess.card_numbers import WITH_ERRORS, Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
+from uq.stats.estimate import Estimate
 from uq.text.numbers import TO_THESE_DIGITS, grouped, percent, percent_interval, printed
 from uq.text.units import beside
 
@@ -42,7 +43,11 @@ _INTERVAL = "95 % interval"
 _IN_BRACKETS = f" ({_INTERVAL})"
 _COMMANDS = "--explain  --full  --json"
 _POINTS = "percentage points"
-_BRIEF = {"seconds": "s", "minutes": "min", "hours": "h"}
+_BRIEF = {
+    **dict.fromkeys(("second", "seconds"), "s"),
+    **dict.fromkeys(("minute", "minutes"), "min"),
+    **dict.fromkeys(("hour", "hours"), "h"),
+}
 _MOST = 24  # lines
 _LAW = 22  # characters of a halved scatter with its unit
 _LONG = 5  # characters of a unit that stands in the header alone
@@ -206,7 +211,11 @@ def _headlines(
         yield Line(f"  {'':<{wide_label}}{'estimate':>{wide_value}}    {_INTERVAL}")
     for line in lines:
         label, value = _label(line, card), number_of(line)
-        if isnan(line.estimate.value):
+        if line.is_open:
+            ends = "; ".join(filter(None, (value, line.note)))
+            yield Line(_cut(f"  {label:<{wide_label}}{'':<{wide_value}}    {ends}", WIDTH))
+            continue
+        if line.is_range:
             yield Line(f"  {label:<{wide_label}}{'':<{wide_value // 4}}{value}")
             continue
         start = f"  {label:<{wide_label}}{value:>{wide_value}}"
@@ -240,8 +249,13 @@ def label_of(line: Headline, card: Card) -> str:
     """Return the label of a number as it is shown."""
     if line.is_range:
         return printed(f"90 % of {card.row_name[1]}")
-    *words, last = line.label.split(" ")
-    return printed(" ".join([*words, _BRIEF.get(last, last)]))
+    return printed(_in_brief(line.label))
+
+
+def _in_brief(text: str) -> str:
+    """Return text with the symbols of times after numbers in place of words."""
+    words = "|".join(_BRIEF)
+    return re.sub(rf"(?<=\d )({words})\b", lambda match: _BRIEF[match[0]], text)
 
 
 def number_of(line: Headline) -> str:
@@ -289,6 +303,7 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
     if not card.causes:
         return
     header, rows = cause_columns(card)
+    rows[:0] = [[words, _level(share), "", ""] for words, share in card.levels]
     filled = [i for i, column in enumerate(zip(*rows, strict=True)) if any(column)]
     header = [header[i] for i in filled]
     rows = [[row[i] for i in filled] for row in rows]
@@ -345,7 +360,10 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     tolerances = [cause.tightened for cause in card.causes if cause.tightened is not None]
     if tolerances:
         first = tolerances[0]
-        name, now = printed(statistic_name(first)), printed(_value(first, first.before.value))
+        name, now = (
+            printed(_in_brief(statistic_name(first))),
+            printed(_value(first, first.before.value)),
+        )
         has_intervals = any(entry.after.has_interval for entry in tolerances)
         pattern = f"now {now}{_IN_BRACKETS}" if has_intervals else f"(now {now})"
         header[3] = (f"half scatter: {name}" if step else name, pattern)
@@ -359,6 +377,12 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
         for cause in card.causes
     ]
     return header, rows
+
+
+def _level(share: Estimate) -> str:
+    """Return the share of a level with its interval."""
+    ends = percent_interval(share.low, share.high).removesuffix(" %")
+    return printed(f"{100 * max(share.value, 0):.0f} %{f' ({ends})' * share.has_interval}")
 
 
 def _share(cause: LeadingInput) -> str:
@@ -450,7 +474,8 @@ def _labelled(label: str, clauses: Sequence[str], lines: int = 2) -> list[Line]:
         return []
     width = 8 if len(label) > 1 else 2
     for count in range(len(clauses), 0, -1):
-        first, *others = wrap(printed("; ".join(clauses[:count])), WIDTH - width - 2)
+        text = _in_brief("; ".join(clauses[:count]))
+        first, *others = wrap(printed(text), WIDTH - width - 2)
         if len(others) < lines:
             break
     others = others[: lines - 1]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_output, with_status
-from nested_studies import nested_result
+from nested_studies import nested_result, regimes
 
 import uq as api
 from benchmarks.cards import cards_on_page
@@ -345,7 +345,34 @@ def test_the_share_that_never_ends_is_a_range_where_censored_rows_may_not_end():
     low, high = share_interval(values == np.inf)[0], share_interval(censored | np.isinf(values))[1]
     assert np.isnan(line.estimate.value)
     assert (line.estimate.low, line.estimate.high) == (low, high)
-    assert re.search(r"never fail +\d[\d.]* to \d[\d.]* %", str(card(shown)))
+    assert re.search(r"never fail +\d[\d.]* to \d[\d.]* %; 10.0 % undecided", str(card(shown)))
+
+
+def test_the_events_lead_where_a_time_of_success_has_no_bound():
+    rng = np.random.default_rng(4)
+    times = np.where(rng.random(400) < 0.2, np.inf, rng.lognormal(8, 1, 400))
+    ds = life(times, thresholds={"life": [3600.0]})
+    ds["life"].attrs["success"] = "the machine has started"
+    shown = card(ds)
+    assert [line.label for line in shown.card.headline if line.leads] == ["succeed within 1 hour"]
+    text = str(shown)
+    places = [
+        text.index(part) for part in ("succeed within 1 h ", "no 95/95 bound: more", "median")
+    ]
+    assert places == sorted(places)
+
+
+def test_causes_and_advice_on_regimes_are_about_one_event_where_chance_decides():
+    ds = nested_result(levels={"x1": "own", "x2": "chance"}, samples=600, units=1, repeats=2)
+    wild = 0.3 * ds["x1"].values + ds["x2"].values > 0.5
+    shown = card(asking(regimes(ds, wild), outputs=["regime", "y"]))
+    assert shown.card.share_of == "P(wild)"
+    (chance, share), (machine, _) = shown.card.levels
+    assert (chance, machine) == ("chance, in all", "the machine, in all") and share.value > 0.5
+    assert re.search(rf"{chance} +{100 * share.value:.0f} % \(", str(shown))
+    assert "expect little of tolerances: chance matters more than the machine" in shown.card.next
+    calm = card(asking(regimes(ds, ds["x1"].values > 0.3), outputs=["regime", "y"])).card
+    assert calm.levels == ()
 
 
 def test_intervals_of_a_card_allow_for_invalid_rows():
