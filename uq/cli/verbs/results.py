@@ -469,12 +469,14 @@ def report(
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one self-contained page with everything."""
-    from uq.render.html.dossier.chapters import dossier as in_order
     from uq.render.html.page import page, write_report
 
+    make = page
+    if dossier:
+        from uq.render.html.dossier.chapters import dossier as make
     path = output or result.with_name(f"{result.stem}{'-dossier' * dossier}.html")
     with _naming_new_folders(output):
-        write_report(result, path, in_order if dossier else page)
+        write_report(result, path, make)
     _warn_if_altered(result)
     print(plain_line(str(path)))
     if show and not webbrowser.open(path.resolve().as_uri()):
