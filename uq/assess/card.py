@@ -91,7 +91,8 @@ class Card:
     row_name : tuple of str
         Singular and plural of what a row represents.
     size : str
-        Number of these, and of rows where they differ: ``2 048 rods in 13 312 rows``.
+        Number of these, and of rows where they differ: ``2 048 rods in 13 312 rows``, or ``300
+        rods, 2 runs each``.
     more_rows : str
         Why they differ, or "".
     no_bound : str
@@ -229,34 +230,35 @@ def _counts(result: Result) -> tuple[int, int, int]:
 
 def _size(result: Result) -> str:
     """Return the number of what rows represent, and of rows where they differ."""
-    count, *_ = _counts(result)
-    rows = len(result)
+    count, repeats, drawn = _counts(result)
+    rows, names = len(result), counted(count, *result.row_name)
     if count in (0, rows):
         return counted(rows, *result.row_name)
-    return f"{counted(count, *result.row_name)} in {counted(rows, 'row')}"
+    each = f", {repeats} runs each" if repeats > 1 else ""
+    return f"{names}{each}" + (drawn < rows) * f" in {counted(rows, 'row')}"
 
 
 def _why_more_rows(result: Result) -> str:
-    """Return why there are more rows than what they represent; "" if there are not."""
-    count, repeats, drawn = _counts(result)
-    if count in (0, len(result)):
+    """Return why a crossed design has more rows than what they represent; "" for others."""
+    count, _, drawn = _counts(result)
+    if count == 0 or drawn == len(result):
         return ""
-    clauses = ["copies with other values of some inputs"] * (drawn < len(result))
-    clauses += [f"{repeats} runs of each {result.row_name[0]}"] * (repeats > 1)
     names = counted(count, *result.row_name)
-    return f"{grouped(len(result))} rows: {names}, {', '.join(clauses)}"
+    return f"{grouped(len(result))} rows: {names}, copies with other values of some inputs"
 
 
 def _why_no_bound(result: Result, lead: Quantity | None) -> str:
     """Return why there is a quantile in place of a bound; "" with a bound, or if none is asked."""
     if lead is None or lead.tolerance_bound is None or not lead.tolerance_bound.reason:
         return ""
+    if result.analysis.outputs[:1] == (REGIME,):
+        return ""
     if lead.events and not lead.is_life and result.analysis.tolerance is None:
         return ""
     reason, (count, repeats, drawn) = lead.tolerance_bound.reason, _counts(result)
     if reason.endswith(DEPENDENT) and drawn < len(result):
         names = counted(count, *result.row_name)
-        reason = f"'{result.design_name}' rows ({names} and copies) {DEPENDENT}"
+        reason = f"'{result.design_name}' rows ({names} and copies) are dependent"
     elif reason.endswith(DEPENDENT) and repeats > 1:
         reason = f"the {repeats} runs of each {result.row_name[0]} {DEPENDENT}"
     return f"no {bound_name(result, lead, lead.tolerance_bound)}: {reason}"

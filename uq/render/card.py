@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import chain
 from math import isnan
 from textwrap import wrap
 from typing import NamedTuple
@@ -130,27 +129,29 @@ def lines_of(card: Card) -> list[Line]:
 
 
 def _lines_of(card: Card) -> list[Line]:
-    blocks = _blocks(card, is_short=True, is_cut=False)
+    blocks = _blocks(card, is_short=True)
     short = _with_commands([line for block in blocks for line in block])
     if len(short) <= SHORT:
         return short
     counts = range(len(card.causes), max(len(card.causes) - 3, 0), -1)
     bare = replace(card, not_halved="")
-    fewer = [replace(bare, causes=card.causes[:count]) for count in counts]
-    variants = [(shown, False) for shown in (card, *fewer, *fewer[-1:])]
-    for i, (shown, is_cut) in enumerate((*variants, (bare, True))):
-        blocks = [block for block in _blocks(shown, is_short=False, is_cut=is_cut) if block]
-        if i == len(variants) - 1:  # no line between the main numbers and the others
-            at = 2 if card.indices_first else 1
-            blocks[at : at + 2] = [[*chain(*blocks[at : at + 2])]]
-        lines = [line for block in blocks for line in (Line(""), *block)][1:]
-        lines = _with_commands(lines)
+    fewer = (replace(bare, causes=card.causes[:count]) for count in counts)
+    variants = [(card, 0), (card, 1), *((shown, 2) for shown in fewer), (bare, 3)]
+    for shown, tightness in variants:
+        blocks = [*filter(None, _blocks(shown, tightness=tightness))]
+        lines = _with_commands([line for block in blocks for line in (Line(""), *block)][1:])
         if len(lines) <= _MOST:
             break
     return lines
 
 
-def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
+def _blocks(card: Card, *, is_short: bool = False, tightness: int = 0) -> list[list[Line]]:
+    """Return the lines of a card in blocks, which blank lines part.
+
+    A tight card has no blank line below the main numbers; a tighter one fewer checks; the tightest
+    one shortened names.
+    """
+    is_cut = tightness > 2
     leading = [line for line in card.headline if line.leads]
     others = [line for line in card.headline if not line.leads]
     warning = [*_warning(card)]
@@ -159,9 +160,10 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
     )
     main, table = ([*_headlines(lines, card, first, is_short)] for lines in (leading, others))
     lacking = [Line(_cut(printed(f"  {card.no_bound}"), WIDTH))] if card.no_bound else []
-    main += [*([] if card.besides else lacking), *warning]
+    main += [*lacking, *warning]
+    if tightness and not card.besides:
+        main, table = [*main, *table], []
     if card.besides and table:
-        table += lacking
         table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
     doubts = filter(None, ("" if warning else card.assumptions, card.sources))
     assumed = _labelled("!", tuple(doubts))
@@ -171,7 +173,7 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
         [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],
         *([causes, main, table] if card.indices_first else [main, table, causes]),
         [
-            *_labelled("CHECKS", card.checks, lines=2 if is_cut else 3),
+            *_labelled("CHECKS", card.checks, lines=2 if tightness > 1 else 3),
             *(line._replace(warns=True) for line in assumed),
             *_labelled("NEXT", _fitting(card.next, is_cut=is_cut)),
         ],

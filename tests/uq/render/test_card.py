@@ -141,14 +141,14 @@ def test_more_rows_than_rods_come_with_the_reason():
     crossed = linear("saltelli", samples=64, replicates=4, analysis={"outputs": ["y"]})
     shown = str(card(crossed.assign_attrs(named)))
     assert shown.startswith("linear   512 pumps in 1 536 rows, 0 invalid ")
-    assert "no 95/95 bound: 'saltelli' rows (512 pumps and copies) are not independent" in shown
+    assert "no 95/95 bound: 'saltelli' rows (512 pumps and copies) are dependent" in shown
     event = linear("saltelli", samples=64, replicates=4, analysis={"thresholds": {"y": 5.0}})
     shown = str(card(event.assign_attrs(named)))
     assert "1 536 rows: 512 pumps, copies with other values of some inputs" in shown
     assert "95/95" not in shown
     repeated = nested_result(samples=300, units=1).assign_attrs(named)
     shown = str(card(repeated))
-    assert re.search(r"   300 pumps in 600 rows, 0 invalid ", shown)
+    assert re.search(r"   300 pumps, 2 runs each, 0 invalid rows ", shown)
     assert "no 95/95 bound: the 2 runs of each pump are not independent" in shown
     other = str(card(asking(linear("sobol", samples=64, replicates=8), outputs=["y"])))
     assert "512 runs, 0 invalid rows" in other

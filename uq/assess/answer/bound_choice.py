@@ -91,8 +91,7 @@ def tolerance_bound_of(
     if any(sides) and not any(map(isfinite, bounds)):
         reason = _why_no_bound(result, element, both, bounds, coverage)
     elif isfinite(wrong := _contradicted(bounds, ends)):
-        wrong_bound = f"the value from order statistics, {unit.text(wrong)}"
-        reason = f"{wrong_bound}, contradicts the quantile estimate"
+        reason = f"order statistics give {unit.text(wrong)}, beyond the quantile"
         bounds = [nan, nan]
     return ToleranceBound(
         coverage,
