@@ -388,7 +388,8 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
         share, accuracy = percent(error["rows_missing_it"]), 100 * error["accuracy"]
         yield f"{share} have numerical errors above {accuracy:g} %"
     if answer.regimes and not answer.regimes_first:
-        yield f"{percent(answer.regimes[0].share.value)} {answer.regimes[0].predicate}"
+        first = answer.regimes[0]
+        yield f"{percent(first.share.value)} of responses are {first.predicate}"
 
 
 def _next(result: Result, answer: Answer) -> Iterator[str]:

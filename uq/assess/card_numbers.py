@@ -222,7 +222,7 @@ def _of_range(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
     for life in quantity.b_lives:
         if life.key[-1] == "B10" and isfinite(life.estimate.value):
             path = key_of("outputs", quantity.name, *life.key)
-            label = "10 % quantile" if findings.result.outputs[quantity.output].success else "B10"
+            label = "10 % succeed by" if findings.result.outputs[quantity.output].success else "B10"
             yield Headline(path, label, with_failed(life.estimate, life.failed), unit, shown)
     low, high = likely.low.value, likely.high.value
     if isfinite(low) and isfinite(high):

@@ -271,7 +271,7 @@ def test_a_time_of_success_has_no_words_of_failure():
     assert "90/95 life" in shown and "B10" in shown
     ds["life"].attrs["success"] = "the machine has started"
     shown = str(card(ds))
-    assert "90/95 bound" in shown and "10 % quantile" in shown
+    assert "90/95 bound" in shown and "10 % succeed by" in shown
     assert " life " not in shown and "B10" not in shown
 
 
@@ -346,6 +346,11 @@ def test_the_share_that_never_ends_is_a_range_where_censored_rows_may_not_end():
     assert np.isnan(line.estimate.value)
     assert (line.estimate.low, line.estimate.high) == (low, high)
     assert re.search(r"never fail +\d[\d.]* to \d[\d.]* %; 10.0 % undecided", str(card(shown)))
+
+
+def test_the_most_frequent_regime_is_a_clause():
+    checks = card(kinds(samples=256, analysis={"outputs": ["work"]})).card.checks
+    assert any(re.fullmatch(r"\d\d\.\d % of responses are \w+", clause) for clause in checks)
 
 
 def test_the_events_lead_where_a_time_of_success_has_no_bound():
