@@ -122,7 +122,7 @@ STUDY_FAULTS = [
     ({"uncertain": {"x3": 1.0}}, "uncertain.x3 = 1.0: must be a table"),
     (
         {"uncertain": {"x3": {"lower": 0, "upper": 1}}},
-        f"[uncertain.x3] distribution: is missing (one of {', '.join(LAWS)}",
+        f"[uncertain.x3] distribution: is missing (allowed: {', '.join(LAWS)}",
     ),
     (
         {"uncertain": {"x3": {"distribution": "unifrom", "lower": 0, "upper": 1}}},
@@ -292,7 +292,7 @@ MISTAKES = {
     "row absent.nc many": "uq: Invalid value for 'N': ",
     "row absent.nc --near-quantile 0.05": "uq: Option '--near-quantile' requires 2 arguments",
     "summary small.toml": (
-        "small.toml: not a readable netCDF file; 'uq run small.toml' computes the result of a study"
+        "small.toml: is a study, not a result; 'uq run small.toml' computes its result"
     ),
     "sensitivity folder": "folder: is a folder, not a result",
     "plot absent.nc": "absent.nc: no such file",

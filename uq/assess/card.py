@@ -11,6 +11,7 @@ import numpy as np
 from uq.assess.answer.answer import conclude
 from uq.assess.answer.answer_sentences import Answer
 from uq.assess.answer.contributions import Contribution
+from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.rankings import Ranking
 from uq.assess.answer.sufficiency import rounded_size
 from uq.assess.answer.tightening import halvings, tightened
@@ -27,13 +28,15 @@ from uq.assess.answer.wording import (
     tied_to,
     without_source,
 )
-from uq.assess.card_numbers import Headline, headlines
+from uq.assess.card_numbers import Headline, bound_name, headlines
 from uq.assess.findings import Findings
 from uq.assess.summary import REGIME
 from uq.contract import Status
 from uq.result.result import Result
 from uq.sampling.designs import DESIGNS, PLAIN
+from uq.sampling.levels import CHANCE
 from uq.stats import estimate_json
+from uq.stats.estimate import Estimate
 from uq.study.file import Tied
 from uq.text.numbers import capitalized, counted, grouped, percent, rows_in_words
 from uq.text.units import readable
@@ -43,6 +46,8 @@ MOST_NAMED = 2
 """Of more fixed values without a source, their number is given."""
 STUDY = "study"
 """Begins the advice on the number of rows."""
+DEPENDENT = "are not independent"
+"""Ends the reason for no bound of dependent rows."""
 
 
 class LeadingInput(NamedTuple):
@@ -85,6 +90,13 @@ class Card:
     rows, failed : int
     row_name : tuple of str
         Singular and plural of what a row represents.
+    size : str
+        Number of these, and of rows where they differ: ``2 048 rods in 13 312 rows``, or ``300
+        rods, 2 runs each``.
+    more_rows : str
+        Why they differ, or "".
+    no_bound : str
+        Reason why there is a quantile in place of a bound, or "".
     headline : tuple of Headline
     assumed : tuple of str
         Assumed inputs to which every life is proportional.
@@ -95,6 +107,9 @@ class Card:
     sources : str
         Laws of few values, and fixed values without a source; "" for none.
     causes : tuple of LeadingInput
+    levels : tuple of tuple
+        Of a study of regimes that chance decides: what varies between runs, and between machines,
+        in words, with its share of the variance.
     index : str
         Key of the index of the causes: ``S1``.
     share_of : str
@@ -118,12 +133,16 @@ class Card:
     rows: int
     failed: int
     row_name: tuple[str, str]
+    size: str = ""
+    more_rows: str = ""
+    no_bound: str = ""
     headline: tuple[Headline, ...] = ()
     assumed: tuple[str, ...] = ()
     assumptions: str = ""
     assumed_causes: tuple[str, ...] = ()
     sources: str = ""
     causes: tuple[LeadingInput, ...] = ()
+    levels: tuple[tuple[str, Estimate], ...] = ()
     index: str = ""
     share_of: str = ""
     indices_first: bool = False
@@ -176,12 +195,16 @@ def card_of(findings: Findings, answer: Answer | None = None) -> Card:
         answer.rows,
         answer.failed,
         result.row_name,
+        _size(result),
+        "" if (no_bound := _why_no_bound(result, lead)) else _why_more_rows(result),
+        no_bound,
         tuple(headlines(findings, answer)),
         () if lead is None else lead.scaled_by,
         _assumptions(result, assumed_causes),
         assumed_causes,
         _sources(result),
         causes,
+        _levels(answer),
         "" if ranking is None else ranking.kind,
         "" if ranking is None else _share_of(ranking, lead is not None and lead.is_life),
         DESIGNS[result.design_name].layout is not PLAIN,
@@ -196,6 +219,49 @@ def _subject(findings: Findings, answer: Answer) -> str:
     if answer.regimes_first:
         return capitalized(readable(str(findings.result.dataset[REGIME].attrs["long_name"])))
     return "" if answer.lead is None else capitalized(answer.lead.words)
+
+
+def _counts(result: Result) -> tuple[int, int, int]:
+    """Return the numbers of what rows represent, of runs of each, and of rows that are no copy."""
+    repeats = result.nesting.repeats
+    drawn = len(result.independent) if result.design.crossed else len(result)
+    return drawn // repeats, repeats, drawn
+
+
+def _size(result: Result) -> str:
+    """Return the number of what rows represent, and of rows where they differ."""
+    count, repeats, drawn = _counts(result)
+    rows, names = len(result), counted(count, *result.row_name)
+    if count in (0, rows):
+        return counted(rows, *result.row_name)
+    each = f", {repeats} runs each" if repeats > 1 else ""
+    return f"{names}{each}" + (drawn < rows) * f" in {counted(rows, 'row')}"
+
+
+def _why_more_rows(result: Result) -> str:
+    """Return why a crossed design has more rows than what they represent; "" for others."""
+    count, _, drawn = _counts(result)
+    if count == 0 or drawn == len(result):
+        return ""
+    names = counted(count, *result.row_name)
+    return f"{grouped(len(result))} rows: {names}, copies with other values of some inputs"
+
+
+def _why_no_bound(result: Result, lead: Quantity | None) -> str:
+    """Return why there is a quantile in place of a bound; "" with a bound, or if none is asked."""
+    if lead is None or lead.tolerance_bound is None or not lead.tolerance_bound.reason:
+        return ""
+    if result.analysis.outputs[:1] == (REGIME,):
+        return ""
+    if lead.events and not lead.is_life and result.analysis.tolerance is None:
+        return ""
+    reason, (count, repeats, drawn) = lead.tolerance_bound.reason, _counts(result)
+    if reason.endswith(DEPENDENT) and drawn < len(result):
+        names = counted(count, *result.row_name)
+        reason = f"'{result.design_name}' rows ({names} and copies) are dependent"
+    elif reason.endswith(DEPENDENT) and repeats > 1:
+        reason = f"the {repeats} runs of each {result.row_name[0]} {DEPENDENT}"
+    return f"no {bound_name(result, lead, lead.tolerance_bound)}: {reason}"
 
 
 def _share_of(ranking: Ranking, is_life: bool) -> str:
@@ -238,9 +304,18 @@ def _sources(result: Result) -> str:
 def _ranking(answer: Answer) -> Ranking | None:
     """Return the ranking of the subject of the study."""
     if answer.regimes_first:
-        causes = (regime.ranking for regime in answer.regime_causes)
+        about = answer.regimes[:1] if _levels(answer) else answer.regime_causes
+        causes = (regime.ranking for regime in about)
         return next((ranking for ranking in causes if ranking is not None), None)
     return None if answer.lead is None else answer.lead.ranking
+
+
+def _levels(answer: Answer) -> tuple[tuple[str, Estimate], ...]:
+    """Return the variance components of the most frequent regime, if chance leads."""
+    leader = None if answer.levels is None else answer.levels.leader
+    if answer.levels is None or leader is None or leader.name != CHANCE or not answer.regimes_first:
+        return ()
+    return tuple((f"{level.words}, in all", level.share) for level in answer.levels.levels)
 
 
 def _causes(result: Result, answer: Answer, ranking: Ranking | None) -> Iterator[LeadingInput]:
@@ -313,7 +388,8 @@ def _checks(findings: Findings, answer: Answer, no_causes: str) -> Iterator[str]
         share, accuracy = percent(error["rows_missing_it"]), 100 * error["accuracy"]
         yield f"{share} have numerical errors above {accuracy:g} %"
     if answer.regimes and not answer.regimes_first:
-        yield f"{percent(answer.regimes[0].share.value)} {answer.regimes[0].predicate}"
+        first = answer.regimes[0]
+        yield f"{percent(first.share.value)} of responses are {first.predicate}"
 
 
 def _next(result: Result, answer: Answer) -> Iterator[str]:
@@ -359,6 +435,9 @@ def _chance(answer: Answer) -> str:
     leader = None if answer.levels is None else answer.levels.leader
     if answer.levels is None or leader is None:
         return "chance decides"
+    if answer.regimes_first:  # the card has the shares
+        others = " and ".join(level.words for level in answer.levels.levels[1:])
+        return f"{leader.words} matter{'s' * leader.explains.endswith('s')} more than {others}"
     share = f"{percent(leader.share.value)} of {answer.levels.variance}"
     return f"{leader.words} {leader.explains} {share}"
 
@@ -368,7 +447,7 @@ def _more_rows(result: Result, rows: int) -> str:
     rows, samples = rounded_size(rows, result)
     if samples == rows:
         return f"{STUDY} about {rows_in_words(rows)} {result.row_name[1]} in all"
-    return f"{STUDY} {grouped(rows)} {result.row_name[1]} in all (set samples = {samples})"
+    return f"{STUDY} {grouped(rows)} rows in all (set samples = {samples})"
 
 
 def statistic_name(tolerance: TighterTolerance) -> str:

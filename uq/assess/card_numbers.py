@@ -11,9 +11,11 @@ from uq.assess.answer.quantities import Quantity
 from uq.assess.answer.tolerance_bound import ToleranceBound, noun_of
 from uq.assess.answer.wording import DisplayUnit
 from uq.assess.findings import Findings
+from uq.result.result import Result
 from uq.stats import estimate_json
 from uq.stats.estimate import Estimate
 from uq.text.keys import key_of
+from uq.text.numbers import percent
 
 MOST_REGIMES = 4
 WITH_ERRORS = " with numerical errors"
@@ -58,6 +60,11 @@ class Headline:
         return self.shown is not None and isnan(self.estimate.value)
 
     @property
+    def is_open(self) -> bool:
+        """Whether it is a probability known to lie in a range alone."""
+        return self.shown is None and isnan(self.estimate.value)
+
+    @property
     def json(self) -> dict[str, Any]:
         """Key, label, numbers and unit."""
         numbers = estimate_json.numbers(self.estimate)
@@ -82,8 +89,11 @@ def headlines(findings: Findings, answer: Answer) -> Iterator[Headline]:
     events = [_of_event(lead, event) for event in lead.events if isfinite(event.share.value)]
     bounds = [*_of_bounds(findings, lead)]
     others = [*_of_range(findings, lead)]
-    lines = [*bounds, *others, *events] if lead.is_life else [*events, *bounds, *others]
-    for line in lines:
+    leads = bool(bounds) or not events
+    if lead.is_life and not leads:  # neither a bound nor its quantile: the events answer
+        events = [replace(line, leads=True) for line in events]
+    first = [*bounds, *others, *events] if lead.is_life and leads else [*events, *bounds, *others]
+    for line in first:
         yield replace(line, leads=line.leads and not answer.regimes_first)
 
 
@@ -112,8 +122,7 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
         return key_of("quantities", quantity.name, "promise", name, verb="answer")
 
     covered, confidence = 100 * tolerance_bound.coverage, 100 * tolerance_bound.confidence
-    ends_well = bool(findings.result.outputs[quantity.output].success)
-    name = f"{covered:g}/{confidence:g} {'life' if quantity.is_life and not ends_well else 'bound'}"
+    name = bound_name(findings.result, quantity, tolerance_bound)
     bounds = {"lower": (tolerance_bound.lower, -inf), "upper": (tolerance_bound.upper, inf)}
     both = isfinite(tolerance_bound.lower) and isfinite(tolerance_bound.upper)
     for side, (bound, towards) in bounds.items():
@@ -145,6 +154,13 @@ def _of_bounds(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
             yield from _with_errors(quantity, line, side)
 
 
+def bound_name(result: Result, quantity: Quantity, tolerance_bound: ToleranceBound) -> str:
+    """Return the name of a bound: ``95/95 life``."""
+    covered, confidence = 100 * tolerance_bound.coverage, 100 * tolerance_bound.confidence
+    is_life = quantity.is_life and not result.outputs[quantity.output].success
+    return f"{covered:g}/{confidence:g} {'life' if is_life else 'bound'}"
+
+
 def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Headline]:
     """Yield a bound or quantile of values that all err to its unsafe side, if it differs."""
     error, tolerance_bound = quantity.own_error, quantity.tolerance_bound
@@ -163,6 +179,15 @@ def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Head
         towards=towards,
         note=f"{noun_of(tolerance_bound)} {by} their numerical errors",
     )
+
+
+def _undecided(findings: Findings, quantity: Quantity) -> str:
+    """Return the share of rows that may still end after the time studied."""
+    described = findings.summary.outputs.get(quantity.name)
+    censored = None if described is None else described.find("censored")
+    if censored is None or not len(findings.rows):
+        return ""
+    return f"{percent(censored.estimate.value / len(findings.rows))} undecided"
 
 
 def _failed_of_median(findings: Findings, quantity: Quantity) -> Estimate | None:
@@ -197,13 +222,14 @@ def _of_range(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
     for life in quantity.b_lives:
         if life.key[-1] == "B10" and isfinite(life.estimate.value):
             path = key_of("outputs", quantity.name, *life.key)
-            label = "10 % quantile" if findings.result.outputs[quantity.output].success else "B10"
+            label = "10 % succeed by" if findings.result.outputs[quantity.output].success else "B10"
             yield Headline(path, label, with_failed(life.estimate, life.failed), unit, shown)
     low, high = likely.low.value, likely.high.value
     if isfinite(low) and isfinite(high):
         yield Headline(key("low"), "90 % between", Estimate(nan, low, high), unit, shown)
     if likely.never.value > 0 or likely.never.low > 0:
-        yield Headline(key("never"), f"never {likely.ends}", likely.never, "1", None)
+        ended = Headline(key("never"), f"never {likely.ends}", likely.never, "1", None)
+        yield replace(ended, note=_undecided(findings, quantity) if ended.is_open else "")
     described = findings.summary.outputs.get(quantity.name) if likely.of_magnitude else None
     mean = None if described is None else described.find("mean")
     if mean is not None:

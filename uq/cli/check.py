@@ -1,5 +1,6 @@
 """Terminal output of ``uq check`` and ``uq plan``, before a run."""
 
+import shlex
 from collections.abc import Iterator, Mapping
 from itertools import combinations
 from typing import Any
@@ -20,7 +21,8 @@ from uq.study.definition import Study
 from uq.study.file import DesignTable
 from uq.study.hints import hints
 from uq.study.row_sampling import group_size, rows
-from uq.text.numbers import counted, elapsed, in_brackets, law, listed, quantity, threshold
+from uq.text.literals import plain_line
+from uq.text.numbers import counted, elapsed, grouped, in_brackets, law, listed, quantity, threshold
 from uq.text.units import powers, typical, unit_of
 
 
@@ -43,6 +45,7 @@ def check(path: str, model: str | None) -> None:
         stated += "; rows of one sample are not"
     dependent = study.dependence is not None or (kind.imported and not design.independent)
     shared = study.random and kind.shares_seeds
+    asked = [path, *(("--model", model) if model else ())]
     seeds = "the model is random: rows that are compared share a seed"
     seeds += "; one more row of each gives the share of noise" * kind.crossed
     grid(
@@ -57,6 +60,7 @@ def check(path: str, model: str | None) -> None:
             *([("tolerance", _tolerance(study))] if study.analysis.tolerance else ()),
             ("sensitivity", f"this design can provide {', '.join(fed_by(kind, dependent))}"),
             ("result", str(runner.output_path(study))),
+            ("cost", f"'uq plan {plain_line(shlex.join(asked))}' estimates time and disk"),
         ]
     )
     heading("\nUncertain inputs")
@@ -208,16 +212,21 @@ def as_json(
 def _show(study: Study, cost: Cost, failures: int, needed: Mapping[str, Needed]) -> None:
     heading(study.path, study.description)
     processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
-    pilot_rows = f"from {cost.pilot_rows} of them" + (f", {failures} invalid" if failures else "")
+    invalid = f", {failures} invalid" if failures else ""
+    pilot_rows = f"estimated from {grouped(cost.pilot_rows)} of them{invalid}"
     sure = cost.seconds_high < _SURE * cost.seconds
     compiled = "" if isinstance(study.model.batch, RowByRow) else ", once the model is compiled"
     band = "" if sure else f"; {elapsed(cost.seconds_low)} to {elapsed(cost.seconds_high)}"
     grid(
         [
-            ("rows", str(cost.rows), pilot_rows),
-            ("a row", quantity(cost.row_seconds, "s"), "of one process"),
-            ("time", elapsed(cost.seconds), f"with {processes}{compiled}{band}"),
-            ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
+            ("rows", grouped(cost.rows), pilot_rows),
+            ("a row", quantity(float(f"{cost.row_seconds:.2g}"), "s"), "in one process"),
+            ("run", elapsed(cost.seconds), f"with {processes}{compiled}{band}"),
+            (
+                "result",
+                _size(cost.result_bytes),
+                f"on disk; {_size(cost.run_bytes)} during the run",
+            ),
             *(
                 (name.replace("_", " "), counted(need.rows, "row"), _why_needed(need, cost))
                 for name, need in needed.items()

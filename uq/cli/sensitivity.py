@@ -1,22 +1,28 @@
 """Terminal output of ``uq sensitivity``, ``uq levels`` and ``uq trace``: tables of 80 columns."""
 
+import re
 from collections.abc import Iterator
+from contextlib import suppress
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
-from uq.assess.answer.wording import NumberTarget
+from uq.assess.answer.wording import NumberTarget, called
 from uq.assess.components_by_level import by_level
 from uq.assess.nested_table import SOLVER, LevelShares
 from uq.assess.sensitivities import Sensitivities, Values, lines
+from uq.assess.statistics.quantiles import SIDES
 from uq.assess.summary_facts import levels_facts
 from uq.cli.printing import grid, heading, note, paragraph, print_json, title
+from uq.errors import InputError
 from uq.indices.index import BY_CORRELATION, S1, IndexKind, Indices
 from uq.render.trace.trace import Trace, trace_json, traced
 from uq.result.result import Result
 from uq.sampling.levels import LEVELS
 from uq.stats.importance_weights import worth_in_words
-from uq.text.numbers import counted, in_brackets
-from uq.text.units import typical, unit_of
+from uq.text import keys
+from uq.text.numbers import counted, in_brackets, percent, quantity
+from uq.text.units import powers, typical, unit_of
 
 
 def show(result: Result, sensitivities: Sensitivities) -> None:
@@ -103,14 +109,19 @@ _MOST_OF_HASH = 40  # characters of a hash
 
 def trace(result: Path, key: str, model: str | None, json: bool) -> int:
     """Show where a number comes from; return the exit code."""
-    provenance = traced(Result.open(result), key, model)
-    print_json(trace_json(provenance)) if json else _show_trace(provenance)
+    opened = Result.open(result)
+    provenance = traced(opened, key, model)
+    print_json(trace_json(provenance)) if json else _show_trace(opened, provenance)
     return 0 if provenance.equal else 1
 
 
-def _show_trace(provenance: Trace) -> None:
+def _show_trace(result: Result, provenance: Trace) -> None:
     heading(provenance.key)
-    grid([(name, _or_null(value)) for name, value in provenance.numbers.items()])
+    if words := _words(result, provenance.path):
+        paragraph(words, indent=2)
+    unit = _unit(result, provenance.path)
+    numbers = provenance.numbers.items()
+    grid([(name, *_with_unit(name, value, unit, provenance.path[-1])) for name, value in numbers])
     heading("\nestimator")
     for citation in provenance.estimators:
         paragraph(citation.does, indent=2)
@@ -130,5 +141,69 @@ def _show_trace(provenance: Trace) -> None:
     note(f"Computed again from these rows: {equal}.")
 
 
-def _or_null(value: object) -> str:
-    return "null" if value is None else str(value)
+_IN_UNIT = (
+    *("mean", "mean_interval", "sd", "sd_interval", "quantiles", "b_lives", "tolerance"),
+    *("promise", "range", "own_error", "sampling_error"),
+)
+"""Parts of an output with values in its unit."""
+_SHARES = ("thresholds", "events", "regimes", "regime", "categories")
+"""Parts whose values are probabilities."""
+_IN_WORDS = {"b_lives": "", "promise": "tolerance bound", "own_error": "numerical error"}
+_BARE = re.compile("coverage|confidence|accuracy|count|samples|(rows|never|share_).*|.*_is_row")
+"""Names of numbers without a unit."""
+
+
+def _target(result: Result, path: keys.Path) -> NumberTarget | None:
+    """Return the output that a path names, or what is derived from one; None without any."""
+    if path[1:] and path[0] in ("outputs", "quantities"):
+        with suppress(InputError, LookupError):
+            return NumberTarget(result, path[1])
+    return None
+
+
+def _words(result: Result, path: keys.Path) -> str:
+    """Return a number in words; "" of those that their key describes."""
+    target = _target(result, path)
+    if target is None:
+        return ""
+    of = ", ".join(filter(None, (target.name, target.meaning)))
+    match path[2:]:
+        case ("quantiles", p, *rest):
+            words = f"{100 * float(p):g} % quantile"
+        case ("thresholds", t, ("above" | "below") as side, *rest):
+            words = target.label(f"P({SIDES[side]}{t})")
+        case ("events", name, *rest):
+            words = NumberTarget(result, name).name
+        case ("estimates", label, *rest):
+            words = target.label(label)
+        case (first, *rest):
+            words = _IN_WORDS.get(first, first)
+        case _:
+            return of
+    return f"{called(' '.join(filter(None, (words, *rest))))} of {of}"
+
+
+def _unit(result: Result, path: keys.Path) -> str:
+    """Return the CF unit of the values at a path, % of probabilities, "" of other numbers."""
+    target = _target(result, path)
+    if path[1:2] in (("stated",), ("sampled",)):
+        return str(result.dataset[path[0]].attrs["units"])
+    if any(part in _SHARES for part in path[:3]):
+        return "%"
+    if target is None or not path[2:]:
+        return ""
+    if path[2] == "estimates":
+        return "%" if path[3].startswith("P(") else target.units
+    return target.units if path[2] in _IN_UNIT or path[2:4] == ("earliest", "lives") else ""
+
+
+def _with_unit(name: str, value: Any, unit: str, last: str) -> tuple[str, str]:
+    """Return a number in full, and as it is read in another unit."""
+    text = "null" if value is None else str(value)
+    is_bare = _BARE.fullmatch(name) or (name == "value" and _BARE.fullmatch(last))
+    if isinstance(value, str) or value is None or unit in ("", "1") or is_bare:
+        return text, ""
+    if unit == "%":
+        return text, percent(value)
+    readable = quantity(value, unit)
+    return f"{text} {powers(unit)}", readable * (not readable.endswith(f" {powers(unit)}"))

@@ -1,40 +1,133 @@
 """Terminal output of ``uq what-if``."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain
 from math import inf, isfinite, nan
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from uq.assess.answer.answer_sentences import MOST_REGIMES, RARE
+from uq.assess.answer.quantities import by_importance
+from uq.assess.answer.wording import called
 from uq.assess.pairing import WORST
 from uq.assess.statistic import Reader, Statistic
 from uq.assess.statistics.counts import NEVER_ENDING
-from uq.assess.summary import summarise
+from uq.assess.summary import REGIME, Summary, summarise
 from uq.assess.what_if import WhatIf, read_changes, reweighted_summary, what_if_facts
-from uq.cli.printing import console, grid, heading, note, paragraph, print_json, title
+from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.cli.summary_tables import Block
 from uq.errors import InputError
 from uq.files.whole_files import write_result
 from uq.result.result import Result
 from uq.stats import two_samples
 from uq.stats.estimate import Estimate, rounded_text
 from uq.stats.importance_weights import ImportanceWeights
-from uq.text.numbers import compared, estimated, in_brackets, number, percent, percent_range
-from uq.text.units import readable, typical, unit_of
+from uq.study.file import Tied
+from uq.text import literals
+from uq.text.numbers import (
+    compared,
+    estimated,
+    in_brackets,
+    law_in_unit,
+    listed,
+    number,
+    percent,
+    percent_range,
+    printed,
+    quantity,
+)
+from uq.text.units import PURE, beside, readable
 
 _HEADER = ("", "as studied", "changed", "difference")
 _AGAIN = ("settings.", "fixed.")
 """Changes with which rows are computed again instead of weighted."""
 
 _PROBABILITIES = ("thresholds", NEVER_ENDING)
+_IN_BRIEF = ("mean", "quantiles", *_PROBABILITIES)
+"""Numbers in the table without ``--full``; of a threshold, one side."""
+_MOST_LEADING = 2
+
+Pair = tuple[Statistic, Statistic]
+"""A number as studied and as changed."""
+Line = tuple[str, ...]
 
 
-def what_if(path: Path, texts: Sequence[str], target: Path | None, json: bool) -> None:
-    """Print the statistics of a result as studied, under changes, and their differences.
+class Table(NamedTuple):
+    """The numbers of an element of an output, or the shares of a category.
+
+    Attributes
+    ----------
+    name, meaning : str
+    pairs : list of Pair
+    block : Block or None
+        Units of an output; None of a category.
+    is_life : bool
+    notes : tuple of str
+    """
+
+    name: str
+    meaning: str
+    pairs: list[Pair]
+    block: Block | None = None
+    is_life: bool = False
+    notes: tuple[str, ...] = ()
+
+    def of(self, *kinds: str) -> list[Pair]:
+        """Return the numbers of these kinds; of a threshold, whether lives end or values exceed."""
+        pairs = [pair for kind in kinds for pair in self.pairs if pair[0].key[0] == kind]
+        return [pair for pair in pairs if pair[0].at is None or pair[0].falls == self.is_life]
+
+    def leading(self, wanted: str) -> list[Pair]:
+        """Return the main shares, the probabilities, or the quantile on the unwanted side."""
+        if self.block is None:
+            shares = [pair for pair in self.pairs if pair[0].estimate.value >= RARE]
+            return sorted(shares, key=lambda pair: -pair[0].estimate.value)[:MOST_REGIMES]
+        quantiles = sorted(self.of("quantiles"), key=lambda pair: float(pair[0].key[-1]))
+        place = {"above": 0, "below": -1}.get(wanted, len(quantiles) // 2)
+        quantile, events = quantiles[place:][:1], self.of("thresholds")
+        return [*(quantile if self.is_life or not events else ()), *events][:_MOST_LEADING]
+
+    def per(self, statistic: Statistic) -> float | None:
+        """Return the size of the unit of a number; None for a share."""
+        is_share = self.block is None or statistic.key[0] in _PROBABILITIES
+        return None if self.block is None or is_share else self.block.per(statistic)
+
+    def sentence(self, before: Statistic, after: Statistic) -> str:
+        """Return a number as changed and as studied, each with its interval."""
+        label, per, unit = before.label, self.per(before), "1"
+        if self.block is not None and per is None:
+            compared_name = self.block.compared or self.name
+            label = estimated(label, self.block.units, compared_name, (before.at or 0.0,))
+        elif self.block is not None:
+            label, unit = f"{before.heading} of {self.name}", self.block.unit.name
+        texts = []
+        for estimate in (after.estimate, before.estimate):
+            value, ends = _share(estimate) if per is None else rounded_text(estimate, per)
+            texts.append(f"{beside(value, unit)}{f' ({ends})' * bool(ends)}")
+        return printed(f"{label}: {', was '.join(texts)}")
+
+    def show(self, *, full: bool) -> None:
+        """Print these numbers as studied and as changed, and their differences."""
+        unit = "" if self.block is None else in_brackets(self.block.unit)
+        heading(f"\n{self.name}{unit}", self.meaning)
+        lines: list[Line] = []
+        for before, after in self.pairs if full or self.block is None else self.of(*_IN_BRIEF):
+            label = before.label if self.block is None else self.block.label(before)
+            lines += _lines(before, after, label, self.per(before))
+        grid(lines, _HEADER)
+        for text in self.notes:
+            paragraph(text, indent=2)
+
+
+def what_if(
+    path: Path, texts: Sequence[str], target: Path | None, json: bool, full: bool = False
+) -> None:
+    """Print the subject of a result under changes and as studied, and a table of differences.
 
     Other laws of inputs weight the rows; other settings and fixed inputs compute them again, from
-    what they have kept. `target` is where that result is written.
+    what they have kept. `target` is where that result is written. Tables have every number of
+    every output where `full`, else the main numbers of the subject.
     """
     result = Result.open(path)
     changes = read_changes(texts)
@@ -45,47 +138,95 @@ def what_if(path: Path, texts: Sequence[str], target: Path | None, json: bool) -
         print_json(what_if_facts(changed).json)
         return
     studied = summarise(result)
-    title(result)
-    console.print(f"What if: {'; '.join(texts)}", soft_wrap=True)
-    for name, shares in changed.summary.shares.items():
-        heading(f"\n{name}")
-        of_study = studied.shares.get(name, {})
-        pairs = [(of_study[label], share) for label, share in shares.items() if label in of_study]
-        lines = (_lines(*pair, pair[0].label) for pair in pairs)
-        grid(chain.from_iterable(lines), _HEADER)
-    for name, output in changed.summary.outputs.items():
-        if name not in studied.outputs:
-            note(f"{name}: not in the result as studied, so without a difference.")
-            continue
-        declared = result.outputs[name.partition("[")[0]]
-        quantiles = (statistic.estimate.value for statistic in output.parts["quantiles"])
-        unit = unit_of(output.units, typical(quantiles))
-        heading(f"\n{name}{in_brackets(unit)}", readable(declared.meaning))
-        variable = compared(name, declared.is_angle)
-        table: list[Line] = []
-        for before, after in _pairs(studied.outputs[name].statistics, output.statistics):
-            asked = () if before.at is None else (before.at,)
-            label = estimated(before.label, output.units, variable, asked)
-            per = unit.size if before.unit == output.units else 1.0
-            is_share = before.key[0] in _PROBABILITIES
-            table += _lines(before, after, label, None if is_share else per)
-        grid(table, _HEADER)
-        for text in dict.fromkeys(text for part in output.statistics for text in part.notes):
-            paragraph(text, indent=2)
+    tables = [*_tables(result, studied, changed.summary)]
+    subject = _subject(result, tables)
+    heading(f"What if {'; '.join(texts)}?")
+    paragraph(f"as studied: {'; '.join(_as_studied(result, changes))}", indent=2)
+    if subject is not None:
+        for pair in subject.leading(_wanted(result, subject)):
+            paragraph(subject.sentence(*pair), indent=2)
+    for table in tables:
+        if full or table is subject:
+            table.show(full=full)
+    absent = [name for name in changed.summary.outputs if name not in studied.outputs]
+    if absent:
+        note(f"{listed(absent)}: not in the result as studied, so without a difference.")
     for text in changed.summary.notes:
         note(text)
     weighted = f"weighted: worth {changed.effective_rows:.0f} independent ones"
-    if isfinite(changed.pareto_k):
+    if full and isfinite(changed.pareto_k):
         weighted += f"; Pareto k = {changed.pareto_k:.2f}"
     again = [place.startswith(_AGAIN) for place in changes]
     ways = ["computed again from what they have kept"] * any(again) + [weighted] * (not all(again))
     note(
         f"The same rows, {', '.join(ways)}."
         + (target is not None) * " 'uq compare' shows the difference row by row."
-        + " Below each value is its 95 % interval, conservative for a difference: it allows for any"
-        " correlation of the two estimates. *: the interval excludes zero. Differences of"
-        " probabilities are in percentage points."
+        + " Below each value is its 95 % interval; *: that of the difference excludes zero."
+        + full * _ON_DIFFERENCES
+        + (not full) * " --full shows all numbers of all outputs."
     )
+
+
+_ON_DIFFERENCES = (
+    " The interval of a difference is conservative: it allows for any correlation of the two"
+    " estimates. Differences of probabilities are in percentage points."
+)
+
+
+def _as_studied(result: Result, changes: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what each change replaces."""
+    for table, name in dict.fromkeys((*place.split(".")[:2],) for place in changes):
+        if table == "uncertain":
+            law = result.study.uncertain[name]
+            assert not isinstance(law, Tied)  # whose changes are refused
+            factor = "" if law.times is None else f"{law.times} times "
+            unit = PURE if law.times else result.input_unit(name)
+            yield f"{called(name)} {factor}{law_in_unit(law, unit)}"
+        elif table == "fixed":
+            variable = result.dataset[name]
+            yield f"{called(name)} {quantity(float(variable), variable.attrs['units'])}"
+        elif table == "settings":
+            value = result.study.settings.get(name)
+            yield f"{name} {'at its default' if value is None else literals.shown(value)}"
+        elif result.study.dependence is not None:
+            yield f"rank correlations {result.study.dependence.rank_correlation}"
+
+
+def _tables(result: Result, studied: Summary, changed: Summary) -> Iterator[Table]:
+    """Yield the numbers of each category and element that both have."""
+    for name, shares in changed.shares.items():
+        pairs = [*_pairs(studied.shares.get(name, {}).values(), shares.values())]
+        yield Table(
+            name, readable(result.dataset[name.partition("[")[0]].attrs["long_name"]), pairs
+        )
+    for name, output in changed.outputs.items():
+        if name not in studied.outputs:
+            continue
+        declared = result.outputs[name.partition("[")[0]]
+        block = Block(output.readable_unit, output.units, compared(name, declared.is_angle))
+        notes = dict.fromkeys(text for part in output.statistics for text in part.notes)
+        pairs = [*_pairs(studied.outputs[name].statistics, output.statistics)]
+        meaning = readable(declared.meaning)
+        yield Table(name, meaning, pairs, block, declared.is_lifetime, (*notes,))
+
+
+def _subject(result: Result, tables: Sequence[Table]) -> Table | None:
+    """Return the numbers that the study is about; None without any."""
+    first, *_ = (*result.analysis.outputs, "")
+    names = [*by_importance(result, result.analysis)]
+    if first == REGIME:
+        names.insert(0, REGIME)
+    ranks = {name: rank for rank, name in reversed([*enumerate(names)])}
+    asked = [table for table in tables if table.name.partition("[")[0] in ranks]
+    return min(asked, key=lambda table: ranks[table.name.partition("[")[0]], default=None)
+
+
+def _wanted(result: Result, subject: Table) -> str:
+    """Return the wanted side of the values of the subject."""
+    output = subject.name.partition("[")[0]
+    if subject.is_life:
+        return "below" if result.outputs[output].success else "above"
+    return result.analysis.wanted.get(output, "")
 
 
 def _changed(result: Result, changes: Mapping[str, Any], target: Path | None) -> WhatIf:
@@ -119,9 +260,6 @@ def _pairs(
         other = changed.get(statistic.key)
         if other is not None and statistic.is_read_by(Reader.COMPARED):
             yield statistic.best, other.best
-
-
-Line = tuple[str, ...]
 
 
 def _lines(

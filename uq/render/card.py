@@ -16,11 +16,12 @@ from uq.assess.card import STUDY, Card, LeadingInput, card_of, statistic_name
 from uq.assess.card_numbers import WITH_ERRORS, Headline
 from uq.assess.findings import Findings
 from uq.result.result import AnyResult, Result
-from uq.text.numbers import TO_THESE_DIGITS, counted, percent, percent_interval, printed
+from uq.stats.estimate import Estimate
+from uq.text.numbers import TO_THESE_DIGITS, grouped, percent, percent_interval, printed
 from uq.text.units import beside
 
 WIDTH = 80
-SHORT = 13
+SHORT = 14
 """A card with no more lines has no blank ones and no headers of columns."""
 
 _HEADERS = {
@@ -41,7 +42,11 @@ _INTERVAL = "95 % interval"
 _IN_BRACKETS = f" ({_INTERVAL})"
 _COMMANDS = "--explain  --full  --json"
 _POINTS = "percentage points"
-_BRIEF = {"seconds": "s", "minutes": "min", "hours": "h"}
+_BRIEF = {
+    **dict.fromkeys(("second", "seconds"), "s"),
+    **dict.fromkeys(("minute", "minutes"), "min"),
+    **dict.fromkeys(("hour", "hours"), "h"),
+}
 _MOST = 24  # lines
 _LAW = 22  # characters of a halved scatter with its unit
 _LONG = 5  # characters of a unit that stands in the header alone
@@ -124,23 +129,29 @@ def lines_of(card: Card) -> list[Line]:
 
 
 def _lines_of(card: Card) -> list[Line]:
-    blocks = _blocks(card, is_short=True, is_cut=False)
+    blocks = _blocks(card, is_short=True)
     short = _with_commands([line for block in blocks for line in block])
     if len(short) <= SHORT:
         return short
     counts = range(len(card.causes), max(len(card.causes) - 3, 0), -1)
     bare = replace(card, not_halved="")
-    fewer = ((replace(bare, causes=card.causes[:count]), False) for count in counts)
-    for shown, is_cut in ((card, False), *fewer, (bare, True)):
-        blocks = [block for block in _blocks(shown, is_short=False, is_cut=is_cut) if block]
-        lines = [line for block in blocks for line in (Line(""), *block)][1:]
-        lines = _with_commands(lines)
+    fewer = (replace(bare, causes=card.causes[:count]) for count in counts)
+    variants = [(card, 0), (card, 1), *((shown, 2) for shown in fewer), (bare, 3)]
+    for shown, tightness in variants:
+        blocks = [*filter(None, _blocks(shown, tightness=tightness))]
+        lines = _with_commands([line for block in blocks for line in (Line(""), *block)][1:])
         if len(lines) <= _MOST:
             break
     return lines
 
 
-def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
+def _blocks(card: Card, *, is_short: bool = False, tightness: int = 0) -> list[list[Line]]:
+    """Return the lines of a card in blocks, which blank lines part.
+
+    A tight card has no blank line below the main numbers; a tighter one fewer checks; the tightest
+    one shortened names.
+    """
+    is_cut = tightness > 2
     leading = [line for line in card.headline if line.leads]
     others = [line for line in card.headline if not line.leads]
     warning = [*_warning(card)]
@@ -148,17 +159,21 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
         (line for line in (*leading, *others) if interval_of(line) and not line.note), None
     )
     main, table = ([*_headlines(lines, card, first, is_short)] for lines in (leading, others))
-    main += warning
+    lacking = [Line(_cut(printed(f"  {card.no_bound}"), WIDTH))] if card.no_bound else []
+    main += [*lacking, *warning]
+    if tightness and not card.besides:
+        main, table = [*main, *table], []
     if card.besides and table:
         table[:0] = [Line(text) for text in wrap(printed(card.besides), WIDTH)[:2]]
     doubts = filter(None, ("" if warning else card.assumptions, card.sources))
     assumed = _labelled("!", tuple(doubts))
     causes = [*_causes(card, is_short=is_short, is_cut=is_cut), *_not_halved(card)]
+    causes += [Line(_cut(printed(f"  {card.more_rows}"), WIDTH))] if card.more_rows else []
     return [
         [_title(card), *(Line(text) for text in wrap(printed(card.subject), WIDTH)[:2])],
         *([causes, main, table] if card.indices_first else [main, table, causes]),
         [
-            *_labelled("CHECKS", card.checks, lines=2 if is_cut else 3),
+            *_labelled("CHECKS", card.checks, lines=2 if tightness > 1 else 3),
             *(line._replace(warns=True) for line in assumed),
             *_labelled("NEXT", _fitting(card.next, is_cut=is_cut)),
         ],
@@ -166,8 +181,12 @@ def _blocks(card: Card, *, is_short: bool, is_cut: bool) -> list[list[Line]]:
 
 
 def _title(card: Card) -> Line:
-    rows = f"{counted(card.rows, *card.row_name)}, {counted(card.failed, 'invalid row')}"
-    text = _beside(f"{card.name}   {rows}", f"{card.model}, {card.design}")
+    """Return the first line; a long one has less space after the name."""
+    noun = "" if " in " in card.size else " row" if card.failed == 1 else " rows"
+    invalid = f"{grouped(card.failed)} invalid{noun}"
+    model, rows = f"{card.model}, {card.design}", f"{card.size}, {invalid}"
+    texts = (_beside(f"{card.name}{' ' * gap}{rows}", model) for gap in (3, 2))
+    text = next((text for text in texts if text.endswith(model)), f"{card.name}   {rows}")
     return Line(text, (0, len(card.name)))
 
 
@@ -194,7 +213,11 @@ def _headlines(
         yield Line(f"  {'':<{wide_label}}{'estimate':>{wide_value}}    {_INTERVAL}")
     for line in lines:
         label, value = _label(line, card), number_of(line)
-        if isnan(line.estimate.value):
+        if line.is_open:
+            ends = "; ".join(filter(None, (value, line.note)))
+            yield Line(_cut(f"  {label:<{wide_label}}{'':<{wide_value}}    {ends}", WIDTH))
+            continue
+        if line.is_range:
             yield Line(f"  {label:<{wide_label}}{'':<{wide_value // 4}}{value}")
             continue
         start = f"  {label:<{wide_label}}{value:>{wide_value}}"
@@ -228,8 +251,13 @@ def label_of(line: Headline, card: Card) -> str:
     """Return the label of a number as it is shown."""
     if line.is_range:
         return printed(f"90 % of {card.row_name[1]}")
-    *words, last = line.label.split(" ")
-    return printed(" ".join([*words, _BRIEF.get(last, last)]))
+    return printed(_in_brief(line.label))
+
+
+def _in_brief(text: str) -> str:
+    """Return text with the symbols of times after numbers in place of words."""
+    words = "|".join(_BRIEF)
+    return re.sub(rf"(?<=\d )({words})\b", lambda match: _BRIEF[match[0]], text)
 
 
 def number_of(line: Headline) -> str:
@@ -277,6 +305,7 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
     if not card.causes:
         return
     header, rows = cause_columns(card)
+    rows[:0] = [[words, _level(share), "", ""] for words, share in card.levels]
     filled = [i for i, column in enumerate(zip(*rows, strict=True)) if any(column)]
     header = [header[i] for i in filled]
     rows = [[row[i] for i in filled] for row in rows]
@@ -333,7 +362,10 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     tolerances = [cause.tightened for cause in card.causes if cause.tightened is not None]
     if tolerances:
         first = tolerances[0]
-        name, now = printed(statistic_name(first)), printed(_value(first, first.before.value))
+        name, now = (
+            printed(_in_brief(statistic_name(first))),
+            printed(_value(first, first.before.value)),
+        )
         has_intervals = any(entry.after.has_interval for entry in tolerances)
         pattern = f"now {now}{_IN_BRACKETS}" if has_intervals else f"(now {now})"
         header[3] = (f"half scatter: {name}" if step else name, pattern)
@@ -347,6 +379,12 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
         for cause in card.causes
     ]
     return header, rows
+
+
+def _level(share: Estimate) -> str:
+    """Return the share of a level with its interval."""
+    ends = percent_interval(share.low, share.high).removesuffix(" %")
+    return printed(f"{100 * max(share.value, 0):.0f} %{f' ({ends})' * share.has_interval}")
 
 
 def _share(cause: LeadingInput) -> str:
@@ -438,7 +476,8 @@ def _labelled(label: str, clauses: Sequence[str], lines: int = 2) -> list[Line]:
         return []
     width = 8 if len(label) > 1 else 2
     for count in range(len(clauses), 0, -1):
-        first, *others = wrap(printed("; ".join(clauses[:count])), WIDTH - width - 2)
+        text = _in_brief("; ".join(clauses[:count]))
+        first, *others = wrap(printed(text), WIDTH - width - 2)
         if len(others) < lines:
             break
     others = others[: lines - 1]

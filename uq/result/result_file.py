@@ -8,9 +8,11 @@ clock, the host, chunks or workers.
 """
 
 import os
+import re
 import shlex
 import warnings
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +22,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask, Model
 from uq.errors import InputError, choices, nearest_file
-from uq.files.netcdf_files import CHECKSUM, most_bytes, refuse_tricks
+from uq.files.netcdf_files import CHECKSUM, SIGNATURES, most_bytes, refuse_tricks
 from uq.files.whole_files import node
 from uq.result.soundness import unsound
 from uq.result.variables import (
@@ -87,6 +89,7 @@ UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, Ty
 """Exceptions that netCDF4 and xarray raise for damaged files."""
 
 _IN_MEMORY_BYTES = 200_000_000
+_MOST_READ = 100_000  # bytes of a file that is no result, to tell what it is
 
 
 def build(
@@ -199,8 +202,9 @@ def open_result(path: str | Path, remedy: str = "") -> xr.Dataset:
     True
     """
     path = Path(path)
-    if not remedy and path.suffix == ".toml":
-        remedy = f"'uq run {shlex.quote(str(path))}' computes the result of a study"
+    if not remedy and (kind := _kind_of(path)):
+        what, does = _KINDS[kind]
+        raise InputError(f"{path}: is {what}, not a result; {does.format(shlex.quote(str(path)))}")
     remedy = remedy or "'uq run STUDY' makes results"
     if kind := node(path):
         inside = _others(path / "_") if os.path.isdir(path) else ""
@@ -218,6 +222,37 @@ def open_result(path: str | Path, remedy: str = "") -> xr.Dataset:
             # The assumption when files did not state it.
             variable.attrs.setdefault("never_known_at_once", 0)
     return named(ds, str(path))
+
+
+_STUDY, _MACHINE = ".toml", ".py"
+_INIT = (
+    "'uq init {0} > study.toml' writes a study of it, 'uq run study.toml --model {0}' its result"
+)
+_KINDS = {
+    _STUDY: ("a study", "'uq run {0}' computes its result"),
+    _MACHINE: ("a machine", _INIT),
+    ".fmu": ("a machine", _INIT),
+    ".csv": (
+        "a table",
+        "'uq import {0} -o OUT.nc --life COLUMN' reads lives, 'uq update RESULT.nc {0} -o"
+        " POSTERIOR.nc' inspections",
+    ),
+    ".html": ("a page", "'uq report RESULT.nc' made it from a result"),
+}
+"""Ending of files that are no results -> what they are, and what reads them."""
+
+
+def _kind_of(path: Path) -> str:
+    """Return the ending of a file that cannot be a result, .py of a machine in TOML; or ""."""
+    if path.suffix not in _KINDS or not path.is_file():
+        return ""
+    with suppress(OSError), path.open("rb") as file:
+        content = file.read(_MOST_READ)
+        if content.startswith(SIGNATURES):
+            return ""
+        if path.suffix == _STUDY and re.search(rb"^\s*\[?machine\b", content, re.MULTILINE):
+            return _MACHINE
+    return path.suffix
 
 
 def _opened(path: Path) -> xr.Dataset:

@@ -120,9 +120,10 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
 
 def _causes(ds: xr.Dataset, name: str) -> tuple[str, ...]:
     """Return the causes that may end a lifetime."""
-    if ds[name].attrs["kind"] != "lifetime" or cause_name(name) not in ds.variables:
+    variables = ds.variables  # to take one of these makes no DataArray
+    if variables[name].attrs["kind"] != "lifetime" or cause_name(name) not in variables:
         return ()
-    return tuple(str(ds[cause_name(name)].attrs.get("flag_meanings", "")).split()[1:])
+    return tuple(str(variables[cause_name(name)].attrs.get("flag_meanings", "")).split()[1:])
 
 
 def coordinates(model: Model, settings: Any) -> dict[str, Any]:

@@ -1,12 +1,17 @@
 """Faults of a study file, and their error lines for the user."""
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 from uq.errors import nearest
 from uq.text.literals import key, shown
+from uq.text.quantities import EXAMPLE
 
 MISSING = "is missing"
+WITH_UNITS = ("uncertain", "fixed")
+"""Tables whose numbers may have a unit."""
+_COMMA = re.compile(r"\s*([-+]?\d+),(\d+)")
 
 _REASONS = {
     "model_type": "must be a table",
@@ -97,6 +102,10 @@ def fault_of(
     reason = _REASONS.get(kind, "").format(**error.get("ctx", {}))
     if kind == "int_type" and isinstance(error["input"], str):
         reason = "must be a whole number, without quotes"
+    if kind == "float_type" and isinstance(error["input"], str) and path[0] in WITH_UNITS:
+        comma = _COMMA.match(error["input"])
+        meant = f"; numbers have a decimal point: {comma[1]}.{comma[2]}" if comma else ""
+        reason = f"must be a number, or have its unit: {EXAMPLE}{meant}"
     return InputFault(path, (reason or error["msg"]) + _as_share(error), error["input"])
 
 

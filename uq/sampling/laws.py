@@ -12,7 +12,7 @@ from pydantic import BaseModel, Field, TypeAdapter
 
 from uq.errors import nearest
 from uq.sampling import listed_values, scipy_laws
-from uq.sampling.input_faults import MISSING, InputFault, fault_of, unknown
+from uq.sampling.input_faults import MISSING, InputFault, fault_of
 from uq.sampling.law import Law
 
 LAWS: dict[str, type[Law]] = {
@@ -53,6 +53,18 @@ _OTHER_NAMES = {
 """Name of a law elsewhere -> its name here."""
 
 
+_NAMES = f" (allowed: {', '.join(LAWS)})"
+
+
+def listed_once(faults: list[InputFault]) -> list[InputFault]:
+    """Return faults of which only the last that allows any law lists the laws."""
+    places = [i for i, fault in enumerate(faults) if fault.problem.endswith(_NAMES)][:-1]
+    shorter = {
+        i: faults[i]._replace(problem=faults[i].problem.removesuffix(_NAMES)) for i in places
+    }
+    return [shorter.get(i, fault) for i, fault in enumerate(faults)]
+
+
 def law_of(entry: Any) -> Law:
     """Return the law from an entry of a study file.
 
@@ -87,12 +99,12 @@ def law_fault(error: dict[str, Any], law: type[BaseModel] | None) -> InputFault:
         for key, given in error["input"].items():
             if meant := nearest(key, ["distribution"]):
                 return InputFault((*path, key), f"no such key{meant}", given)
-        return InputFault((*path, "distribution"), f"{MISSING} (one of {', '.join(LAWS)})")
+        return InputFault((*path, "distribution"), f"{MISSING}{_NAMES}")
     if error["type"] == "union_tag_invalid":
         name = error["ctx"]["tag"]
         other = _OTHER_NAMES.get(name.lower())
-        problem = f"no such law; did you mean '{other}'?" if other else unknown("law", name, LAWS)
-        return InputFault((*path, "distribution"), problem, name)
+        meant = f"; did you mean '{other}'?" if other else nearest(name, LAWS)
+        return InputFault((*path, "distribution"), f"no such law{meant}{_NAMES}", name)
     fields = list(law.model_fields) if law else []
     common = list(Law.model_fields)[1:] if law and issubclass(law, Law) else []
     names = [name for name in fields if name not in common] + common  # source is the first

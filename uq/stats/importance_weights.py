@@ -217,7 +217,8 @@ def too_large(share: float, rows: int) -> str:
     if share <= _LITTLE:
         return ""
     more = ceil(rows * (share / _LITTLE - 1))
-    return f"a single sample carries {share:.1%} of the weight, above {_LITTLE:.0%}: add {more}"
+    carried = f"a single sample carries {share:.1%} of the weight, above {_LITTLE:.0%}"
+    return f"{carried}: add {more} samples"
 
 
 def _are_few_values(ascending: Floats, count: int) -> bool:

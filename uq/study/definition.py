@@ -218,6 +218,10 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
     machine = re.fullmatch(r"(.+\.(?:py|fmu))(?::\w+)?", str(path))
     if machine and Path(machine[1]).is_file():
         raise _is_machine(str(path))
+    if str(path).endswith(".csv") and Path(path).is_file():
+        named = shlex.quote(str(path))
+        reads = f"'uq import {named} -o OUT.nc --life COLUMN' reads lives from it"
+        raise InputError(f"{path}: is a table, not a study; {reads}")
     return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
 
 

@@ -12,7 +12,7 @@ from uq.contract import Model
 from uq.errors import InputError, first_fault_alone, one_line
 from uq.sampling.designs import IMPORTED
 from uq.sampling.input_faults import MISSING, InputFault, fault_of
-from uq.sampling.laws import LAWS, law_fault
+from uq.sampling.laws import LAWS, law_fault, listed_once
 from uq.sampling.named_values import setting_types
 from uq.study.changes import study_text
 from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance, Until
@@ -102,7 +102,8 @@ def shape_faults(data: dict[str, Any]) -> list[InputFault]:
         StudyFile.model_validate(data)
     except ValidationError as invalid:
         faults += [_fault(dict(error)) for error in invalid.errors(include_url=False)]
-    return [fault for fault in faults if not any(_is_meant(fault, other) for other in faults)]
+    meant = [fault for fault in faults if not any(_is_meant(fault, other) for other in faults)]
+    return listed_once(meant)
 
 
 def _is_meant(missing: InputFault, other: InputFault) -> bool:

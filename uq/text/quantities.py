@@ -2,6 +2,7 @@
 
 import re
 from contextlib import suppress
+from difflib import get_close_matches
 from fractions import Fraction
 from math import pi
 
@@ -24,6 +25,14 @@ _DECODED = {word: name for name, word in _TIMES.items()} | {
     "nanoseconds": "ns",
 }
 _OTHER_TIMES = {"y": "a", "yr": "a", "hr": "h"}
+_WRITTEN_OUT = {
+    **dict.fromkeys(("micron", "microns", "micrometer", "micrometre"), "um"),
+    **dict.fromkeys(("millimeter", "millimetre"), "mm"),
+    **dict.fromkeys(("meter", "metre"), "m"),
+    **dict.fromkeys(("sec", "secs"), "s"),
+    **{"newton": "N", "pascal": "Pa", "hertz": "Hz", "watt": "W", "radian": "rad"},
+    **dict.fromkeys(("week", "weeks", "month", "months"), "days"),
+}
 _DEGREES = ("°", "deg", "degree", "degrees")
 
 _NUMBER = r"[-+]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][-+]?[0-9]{1,3})?"
@@ -37,6 +46,8 @@ SHAPE = rf"^\s*{_NUMBER}\s*{_UNIT}$"
 """Regular expression of a quantity, for editors."""
 
 _PART = re.compile(r"\s*([/*·]?)\s*([A-Za-zµμΩ°%]+)(?:\^|\*\*)?([-⁻]?[\d⁰¹²³⁴-⁹]{1,2})?\s*")
+_FRACTION = re.compile(r"(?:\^|\*\*|[^\W\d_])\(?[-+]?\d*(?:\.|\d/)\d")
+WHOLE_POWERS = "powers are whole numbers, as in 'm s-2' or 'm/s^2'"
 _PLAIN_DIGITS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 
 Dimensions = dict[str, int]
@@ -128,8 +139,22 @@ def misfit(text: str, name: str, units: str) -> str:
         return ""
     given = text.strip().removeprefix(written.number).strip()
     allowed = allowed_units(units)
-    meant = nearest(given, allowed)
-    return f"the unit '{given}' does not fit '{name}'{meant} (allowed: {', '.join(allowed)})"
+    why = f"; {WHOLE_POWERS}" if _FRACTION.search(given) else ""
+    meant = _meant(given, units) or nearest(given, allowed)
+    return f"the unit '{given}' does not fit '{name}'{why}{meant} (allowed: {', '.join(allowed)})"
+
+
+def _meant(given: str, units: str) -> str:
+    """Return "; did you mean 'um'?" for a unit written out, such as ``microns``; or ""."""
+
+    def symbol(match: re.Match[str]) -> str:
+        close = get_close_matches(match[0].lower(), _WRITTEN_OUT, 1, 0.8)
+        return _WRITTEN_OUT[close[0]] if close and unknown_factor(match[0]) else match[0]
+
+    plain = re.sub(r"[().]", " ", given).strip() if not _FRACTION.search(given) else given
+    text = re.sub(r"[^\W\d_]+", symbol, plain.replace("/ ", "/"))
+    fits = text != given and _taken_apart(text)[2] == _taken_apart(units)[2]
+    return f"; did you mean '{text}'?" if fits else ""
 
 
 def fault_of_unit(unit: str) -> str:
@@ -141,6 +166,8 @@ def fault_of_unit(unit: str) -> str:
         place = match.end()
     if unit == "1" or (unit and place == len(unit)):
         return ""
+    if _FRACTION.search(unit):
+        return WHOLE_POWERS
     return "write its factors with their powers, such as 'N m-1', or '1' for a pure number"
 
 

@@ -1,5 +1,6 @@
 """Studies of samples with several units and repeats."""
 
+import numpy as np
 from computed import UNIFORM, computed, once, study_of
 
 LEVELS = {"x1": "shared", "x2": "own", "x3": "chance"}
@@ -25,3 +26,17 @@ def nested(levels=LEVELS, model=None, uncertain=None, analysis=None, **design):
 def nested_result(**options):
     """Return its result."""
     return computed(nested(**options))
+
+
+def regimes(ds, codes):
+    """Return a result with regimes."""
+    attrs = {
+        "role": "output",
+        "kind": "category",
+        "units": "1",
+        "long_name": "regime",
+        "may_be_undefined": 0,
+        "flag_values": np.array([-1, 0, 1], np.int8),
+        "flag_meanings": "none calm wild",
+    }
+    return ds.assign(regime=("row", np.asarray(codes, np.int8), attrs))

@@ -2,26 +2,12 @@
 
 import numpy as np
 import pytest
-from nested_studies import nested_result
+from nested_studies import nested_result, regimes
 
 import uq as api
 from uq.assess.components_by_level import by_level
 from uq.result.nesting import nesting_of
 from uq.result.result import Result
-
-
-def regimes(ds, codes):
-    """Return a result with regimes."""
-    attrs = {
-        "role": "output",
-        "kind": "category",
-        "units": "1",
-        "long_name": "regime",
-        "may_be_undefined": 0,
-        "flag_values": np.array([-1, 0, 1], np.int8),
-        "flag_meanings": "none calm wild",
-    }
-    return ds.assign(regime=("row", np.asarray(codes, np.int8), attrs))
 
 
 def test_a_repeat_may_end_in_another_regime():

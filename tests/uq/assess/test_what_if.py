@@ -298,7 +298,8 @@ def test_rows_that_all_failed_say_nothing():
 def test_on_the_command_line(result, tmp_path):
     path = tmp_path / "rows.nc"
     result.to_netcdf(path)
-    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8"])
+    asked = ["what-if", str(path), "--set", "uncertain.z.sd=0.8"]
+    run = CliRunner().invoke(app, [*asked, "--full"])
     assert run.exit_code == 0 and "a integrated exactly" in run.output
     assert re.search(r"worth\s+\d+\s+independent\s+ones", run.output)
     assert re.search(r"as studied +changed +difference *\n", run.output)
@@ -309,16 +310,40 @@ def test_on_the_command_line(result, tmp_path):
     assert before == pytest.approx(studied, abs=0.05 * studied)
     assert after == pytest.approx(changed, abs=0.05 * studied)
     assert apart == pytest.approx(changed - studied, rel=0.01)
-    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8", "--json"])
+    run = CliRunner().invoke(app, [*asked, "--json"])
     document = json.loads(run.output)
     assert document["effective_rows"] < 1000 and set(document["outputs"]) == {"life", "y"}
+
+
+def test_the_first_lines_state_the_change_and_the_subject_before_and_after(result, tmp_path):
+    path = tmp_path / "rows.nc"
+    result.to_netcdf(path)
+    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.a.sigma=0.6"])
+    lines = run.output.splitlines()
+    assert lines[0] == "What if uncertain.a.sigma=0.6?"
+    assert lines[1] == "  as studied: a lognormal: median 1, sigma 0.5"
+    studied = summarised(result)["outputs"]["life"]["quantiles"]["0.05"]
+    changed = what_if(result, {"uncertain.a.sigma": 0.6}).loc["life", "q0.05"]
+    now, before = re.search(
+        r"^  5 % quantile of life: (\S+) s \(\S+ to \S+\), was (\S+) s \(",
+        lines[2].replace("\xa0", " "),
+    ).groups()
+    assert float(now) == pytest.approx(changed, rel=0.01)
+    assert float(before) == pytest.approx(studied["value"], rel=0.01)
+    assert re.match(r"  P\(life < 0.8.s\): \S+.% \(.*\), was \S+.% \(", lines[3])
+    assert "\ny" not in run.output and "B10" not in run.output and "P(>" not in run.output
+    assert len(lines) < 25
+    full = CliRunner().invoke(
+        app, ["what-if", str(path), "--set", "uncertain.a.sigma=0.6", "--full"]
+    )
+    assert "B10" in full.output and "Pareto k" in full.output
 
 
 def test_a_table_shows_the_share_that_never_ends_and_differences_in_points(tmp_path):
     path = tmp_path / "rows.nc"
     rows = computed(study(settings={"never_above": 1.0}))
     rows.to_netcdf(path)
-    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8"])
+    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8", "--full"])
     never = re.search(
         r"\n  never ends +(\S+) % +(\S+) % +(\S+) points", run.output.partition("\ny")[0]
     )

@@ -106,6 +106,7 @@ def test_check_says_what_would_run(uq, write_study):
     ended = uq("check", path)
     assert ended.code == 0
     assert "240 = 16 samples x 3 replicates x 5 rows each" in ended.out
+    assert "uq plan " in ended.out
     assert "uniform(lower = 0.1, upper = 0.9)" in ended.out
 
 

@@ -97,7 +97,7 @@ def test_plan_shows_all_of_it(uq, write_study, monkeypatch):
     path = write_study(model="linear", uncertain=("x1",), more="[settings]\nfail_above = 0.6")
     shown = uq("plan", path, "--workers", 1)
     assert shown.code == 0
-    for word in ("rows", "64", "invalid", "one process"):
+    for word in ("rows", "64", "estimated from", "invalid", "one process", "on disk"):
         assert word in shown.out
     header, *lines = shown.out[shown.out.index("Expected width") :].splitlines()[1:]
     assert header.split() == ["mean", "0.05", "0.5", "0.95"]

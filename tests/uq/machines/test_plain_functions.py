@@ -265,7 +265,7 @@ def test_a_new_study_has_the_laws_and_outputs_that_the_machine_proposes(uq, fold
         ('("life",)', '"life"', "headline = 'life': must be a list of outputs"),
         ('"load": {', '"lead": {', "uncertain: 'lead': no such parameter; did you mean 'load'?"),
         ('"normal"', '"norml"', '[uncertain.load] distribution = "norml": no such law; did you'),
-        ('"distribution"', '"law"', "[uncertain.load] distribution: is missing (one of uniform,"),
+        ('"distribution"', '"law"', "[uncertain.load] distribution: is missing (allowed: uniform,"),
         ('"distribution"', '"distributon"', "no such key; did you mean 'distribution'?"),
         ('"sd": 0.1', '"sd": -0.1', "[uncertain.load] sd = -0.1: must be greater than 0"),
         ('"sd": 0.1', '"sigma": 0.1', "[uncertain.load] sd: is missing"),

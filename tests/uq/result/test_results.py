@@ -25,6 +25,7 @@ from uq.render.html.page import page
 from uq.result import result_file
 from uq.result.elements import elements_of
 from uq.result.result import Result
+from uq.result.variables import outputs_of
 from uq.study.definition import load_study, study_from_text
 
 
@@ -289,3 +290,14 @@ def test_an_output_with_numerical_errors_names_the_setting_that_reduces_them():
     }
     result = Result(computed(study_of(tables)))
     assert result.outputs["first_time_to_depth"].accuracy == "accuracy"
+
+
+def test_the_outputs_of_a_result_are_read_without_a_data_array(kinds, monkeypatch):
+    ds = result_file.open_result(kinds[1])
+    expected = outputs_of(ds)
+
+    def slow(*_):
+        raise AssertionError("a DataArray takes a hundred times as long as a variable")
+
+    monkeypatch.setattr(xr.Dataset, "__getitem__", slow)
+    assert outputs_of(ds) == expected

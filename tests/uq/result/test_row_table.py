@@ -48,6 +48,23 @@ def test_the_command_writes_every_digit(uq, folder):
 
 
 @pytest.mark.parametrize(
+    "asked",
+    [
+        ("export", "--csv", "new/rows.csv"),
+        ("report", "-o", "new/page.html"),
+        ("plot", "--only", "histogram", "-o", "new"),
+    ],
+)
+def test_a_new_folder_is_named(uq, folder, asked):
+    write_result(asking(linear(samples=64), outputs=["y"]), folder / "out.nc")
+    verb, *options = asked
+    ended = uq(verb, "out.nc", *options)
+    assert (ended.code, ended.err) == (0, "new: new folder\n") and ended.out.startswith("new/")
+    again = uq(verb, "out.nc", *options)
+    assert (again.code, again.out, again.err) == (0, ended.out, "")
+
+
+@pytest.mark.parametrize(
     ("options", "line"),
     [
         ((), "give --csv FILE or --parquet FILE"),

@@ -136,6 +136,26 @@ def test_a_file_that_cannot_be_read_is_one_line(tmp_path):
     assert "cannot be read: " in line("nul\0.toml")
 
 
+def test_the_laws_are_listed_once():
+    wrong = {"distribution": "gauss", "mean": 0.0, "sd": 1.0}
+    faults = lines({"uncertain": {"x1": wrong, "x2": {"lower": 0, "upper": 1}, "x3": wrong}})
+    assert len(faults) == 3 and [fault.count("(allowed: uniform, ") for fault in faults] == [
+        0,
+        0,
+        1,
+    ]
+    assert faults[0].endswith(
+        "[uncertain.x1] distribution = \"gauss\": no such law; did you mean 'normal'?"
+    )
+
+
+def test_a_text_in_place_of_a_number_shows_a_unit():
+    texts = {"x1": {"distribution": "uniform", "lower": "0,5 mm", "upper": "abc"}}
+    first, second = lines({"uncertain": texts})
+    assert first.endswith('"24 hours", "250 um"; numbers have a decimal point: 0.5')
+    assert second.endswith('= "abc": must be a number, or have its unit: "24 hours", "250 um"')
+
+
 def test_odd_names_stay_on_one_line():
     (line,) = lines(text=study_text() + '\nfixed = {"a\\nb c" = 1.0}')
     assert line.startswith('x.toml: [fixed] "a\\nb c" = 1.0: no such parameter')

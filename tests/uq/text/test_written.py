@@ -10,7 +10,7 @@ from computed import asking, linear, study_of, summarised, with_output
 from uq.errors import InputError
 from uq.files.whole_files import write_result
 from uq.text.numbers import threshold
-from uq.text.quantities import misfit, read_quantity, read_threshold
+from uq.text.quantities import fault_of_unit, misfit, read_quantity, read_threshold
 
 
 @pytest.mark.parametrize(
@@ -50,6 +50,31 @@ def test_a_quantity_is_the_number_that_one_would_write_in_the_plain_unit(text, v
 def test_what_is_no_quantity_is_refused(text):
     with pytest.raises(ValueError, match="number"):
         read_quantity(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "units", "words"),
+    [
+        ("250 um^0.5", "m", "; powers are whole numbers, as in 'm s-2' or 'm/s^2' (allowed: m,"),
+        ("250 um^1/2", "m", "; powers are whole numbers"),
+        ("3 m**0.5", "m", "; powers are whole numbers"),
+        ("3 kg0.5", "kg", "; powers are whole numbers"),
+        ("250 microns", "m", "; did you mean 'um'? (allowed: m, mm, um, km)"),
+        ("250 mikrons", "m", "; did you mean 'um'?"),
+        ("250 pm/sec", "m s-1", "; did you mean 'pm/s'?"),
+        ("250 pm.s-1", "m s-1", "; did you mean 'pm s-1'?"),
+        ("250 pm/(s)", "m s-1", "; did you mean 'pm/s'?"),
+        ("4 weeks", "s", "; did you mean 'days'?"),
+        ("4 micronewtons", "m", "' does not fit 'x' (allowed:"),
+    ],
+)
+def test_a_misspelt_unit_or_power_comes_with_the_right_one(text, units, words):
+    assert words in misfit(text, "x", units)
+
+
+def test_the_unit_of_an_own_machine_has_whole_powers():
+    assert fault_of_unit("kg0.5").startswith("powers are whole numbers")
+    assert fault_of_unit("kg m2 s-2") == ""
 
 
 def test_a_unit_that_does_not_fit_names_those_that_do():

@@ -89,10 +89,9 @@ def tolerance_bound_of(
     with_failed = [statistic.failed if statistic else None for statistic in quantiles]
     reason = ""
     if any(sides) and not any(map(isfinite, bounds)):
-        reason = _why_no_bound(result, element, both, bounds)
+        reason = _why_no_bound(result, element, both, bounds, coverage)
     elif isfinite(wrong := _contradicted(bounds, ends)):
-        wrong_bound = f"the value from order statistics, {unit.text(wrong)}"
-        reason = f"{wrong_bound}, contradicts the quantile estimate"
+        reason = f"order statistics give {unit.text(wrong)}, beyond the quantile"
         bounds = [nan, nan]
     return ToleranceBound(
         coverage,
@@ -189,7 +188,11 @@ def _sides(
 
 
 def _why_no_bound(
-    result: Result, element: Element, both: list[Statistic | None], bounds: list[float]
+    result: Result,
+    element: Element,
+    both: list[Statistic | None],
+    bounds: list[float],
+    coverage: float,
 ) -> str:
     needed = next(
         (statistic.rows_needed for statistic in both if statistic and statistic.rows_needed), None
@@ -199,7 +202,9 @@ def _why_no_bound(
     if needed:
         return f"{needed:.0f} rows are required"
     if any(not isnan(bound) for bound in bounds):
-        return f"too few {end_verb(element)}"
+        many = "more" if element.declared.success else "fewer"
+        may = "may not " if element.declared.success else ""
+        return f"{many} than {100 * (1 - coverage):.3g} % {may}{end_verb(element)}"
     if result.has_weights:
         return "the rows are weighted by inspections"
     if result.is_nested:

@@ -2,6 +2,8 @@
 
 import sys
 import webbrowser
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -192,7 +194,8 @@ def import_(
     check_target(output, 0)
     columns = RecordColumns(life, unit, censored, low, high, entered, cause)
     record, notes = read_lives(data, columns, [_number_or_text(at) for at in threshold or ()])
-    write_result(record, output)
+    with _naming_new_folders(output):
+        write_result(record, output)
     if not quiet:
         summary_tables.show_card(output, notes)
 
@@ -217,7 +220,9 @@ def export(
     from uq.result.result import Result
     from uq.result.row_table import write_rows
 
-    for file in write_rows(Result.open(result), csv, parquet):
+    with _naming_new_folders(csv, parquet):
+        files = write_rows(Result.open(result), csv, parquet)
+    for file in files:
         print(file)
 
 
@@ -348,12 +353,13 @@ def what_if(
         Path | None,
         typer.Option("-o", "--output", metavar="NEW.nc", help="Keep rows computed again."),
     ] = None,
+    full: given.Full = False,
     json: given.Json = False,
 ) -> None:
     """Show what other laws of inputs or settings would change."""
     from uq.cli import what_if as question
 
-    question.what_if(result, set_, output, json)
+    question.what_if(result, set_, output, json, full)
 
 
 def twin(
@@ -436,16 +442,17 @@ def plot(
     from uq.render.figures.figure import width_in_metres
     from uq.result.result import Result
 
-    paths = save_all(
-        Result.open(result),
-        folder or result.with_suffix(""),
-        only=only or (),
-        outputs=outputs or (),
-        every=every,
-        formats=tuple(dict.fromkeys(",".join(formats or ["png"]).replace("|", ",").split(","))),
-        width=None if width is None else width_in_metres(width),
-        titles=titles,
-    )
+    with _naming_new_folders(folder and folder / "any"):
+        paths = save_all(
+            Result.open(result),
+            folder or result.with_suffix(""),
+            only=only or (),
+            outputs=outputs or (),
+            every=every,
+            formats=tuple(dict.fromkeys(",".join(formats or ["png"]).replace("|", ",").split(","))),
+            width=None if width is None else width_in_metres(width),
+            titles=titles,
+        )
     for path in paths:
         print(path)
 
@@ -462,15 +469,27 @@ def report(
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one self-contained page with everything."""
-    from uq.render.html.dossier.chapters import dossier as in_order
     from uq.render.html.page import page, write_report
 
+    make = page
+    if dossier:
+        from uq.render.html.dossier.chapters import dossier as make
     path = output or result.with_name(f"{result.stem}{'-dossier' * dossier}.html")
-    write_report(result, path, in_order if dossier else page)
+    with _naming_new_folders(output):
+        write_report(result, path, make)
     _warn_if_altered(result)
     print(plain_line(str(path)))
     if show and not webbrowser.open(path.resolve().as_uri()):
         print("no browser found; open this file yourself", file=sys.stderr)
+
+
+@contextmanager
+def _naming_new_folders(*files: Path | None) -> Iterator[None]:
+    """Name the folders that are made for files which the user has named."""
+    folders = dict.fromkeys(file.parent for file in files if file is not None)
+    new = [folder for folder in folders if not folder.exists()]
+    yield
+    streams.complain(*(f"{folder}: new folder" for folder in new))
 
 
 def _warn_if_altered(path: Path) -> None:

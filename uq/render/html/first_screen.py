@@ -65,7 +65,7 @@ def first_screen(card: Card, answer: Answer, figure: Markup) -> dict[str, Any]:
         "others": [_tile(line, card) for line in card.headline if line not in tiles],
         "figure": figure,
         "causes": _causes(card, answer),
-        "rows": counted(card.rows, *card.row_name),
+        "rows": card.size,
         "invalid": counted(card.failed, "invalid row"),
     }
 

@@ -132,6 +132,8 @@ class Trace:
     Attributes
     ----------
     key : str
+    path : tuple of str
+        In the JSON of its verb.
     numbers, again : dict
         The number, or value, low and high of an estimate, and the same from the rows alone; null is
         None.
@@ -152,6 +154,7 @@ class Trace:
     """
 
     key: str
+    path: tuple[str, ...]
     numbers: Mapping[str, Any]
     again: Mapping[str, Any]
     estimators: tuple[Citation, ...]
@@ -233,6 +236,7 @@ def traced(result: Result, key: str, model: str | None = None) -> Trace:
     attrs = result.dataset.attrs
     return Trace(
         key_of(*path, verb=parts.verb, options=parts.options),
+        path,
         numbers,
         numbers_in(again),
         tuple(dict.fromkeys(map(cited, place.by))),

@@ -292,6 +292,31 @@ def test_a_trace_says_who_estimates_and_who_made_the_rows(uq, write_study):
     assert series["value"] == entry["low"] and series["equal"] is True
 
 
+@pytest.mark.parametrize(
+    ("key", "words", "number"),
+    [
+        (
+            "outputs/life/quantiles/0.5",
+            "50 % quantile of life, time until",
+            r"low +\S+ s +\S+ days",
+        ),
+        ("outputs/life/quantiles/0.5/low", "50 % quantile low of life", r"value +\S+ s +\S+ days"),
+        ("outputs/life/mean", "mean of life", r"value +\S+ s +\S+ days"),
+        ("outputs/life/thresholds/5 days/below", "P(< 5 days) of life", r"value +\S+ +\S+ %"),
+        ("answer/quantities/life/promise", "tolerance bound of life", r"confidence +\S+ *\n"),
+        ("answer/quantities/life/range/never", "range never of life", r"value +\S+ *\n"),
+        ("inputs/rate/stated", "inputs/rate/stated", r"0.5 +\S+ m s⁻¹ +\S+ pm s⁻¹"),
+        ("samples", "samples", r"value +64 *\n"),
+    ],
+)
+def test_a_trace_shows_words_and_units(uq, write_study, key, words, number):
+    asked = '[analysis]\nthresholds = {life = "5 days"}'
+    path = write_study("exponential-wear", uncertain=("rate",), law=LAW, more=asked)
+    uq("run", path, "-o", "out.nc")
+    shown = uq("trace", "out.nc", key).out.partition("estimator")[0]
+    assert words in shown and re.search(rf"^ +{number}", shown, re.MULTILINE), shown
+
+
 LAW = 'distribution = "uniform", lower = 1e-10, upper = 9e-10'
 
 
