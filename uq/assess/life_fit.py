@@ -12,6 +12,7 @@ import pandas as pd
 from uq.assess.observed_lives import ObservedLives
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.contract import Floats, Mask
+from uq.errors import InputError, choices, nearest
 from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.stats.estimate import Estimate
@@ -275,7 +276,7 @@ _COLUMNS = [
 ]
 
 
-def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
+def life_fits(result: AnyResult, output: str, laws: Collection[str] = tuple(LAWS)) -> pd.DataFrame:
     """Fit laws to a lifetime by maximum likelihood.
 
     Parameters
@@ -284,6 +285,8 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
         A result of design ``monte-carlo``.
     output : str
         A lifetime, or one element of it.
+    laws : collection of str, optional
+        Names of the laws, by default all.
 
     Returns
     -------
@@ -301,7 +304,7 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     Raises
     ------
     InputError
-        When there is no such output or it is not a lifetime.
+        When there is no such output or law, or the output is not a lifetime.
 
     Notes
     -----
@@ -317,7 +320,8 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
 
     Examples
     --------
-    >>> laws = uq.life_fits(uq.run("studies/exponential-wear.toml"), "life").loc["life"]
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> laws = uq.life_fits(ds, "life", ["weibull", "lognormal"]).loc["life"]
     >>> laws.loc["lognormal", "sigma"].round(1).item()
     0.5
     >>> laws.loc["weibull", "refused"].startswith("rejected")
@@ -325,12 +329,15 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     """
     result = Result.of(result)
     result.refuse_if_weighted("laws fitted to lives")
+    for law in laws:
+        if law not in LAWS:
+            raise InputError(f"no such law '{law}'{nearest(law, LAWS)} (allowed: {choices(LAWS)})")
     rows = result.independent
     independent = rows.dependence.is_none
     lines = {
         (element.name, law): _line(fit)
         for element in rows.lifetimes(output)
-        for law, fit in fits_of(element, independent, result.is_field_record).items()
+        for law, fit in fits_of(element, independent, result.is_field_record, laws).items()
     }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "law"])
     return pd.DataFrame(list(lines.values()), index=index, columns=_COLUMNS)

@@ -25,18 +25,19 @@ def record(folder, lives=LIVES, name="rods"):
     return folder / f"{name}.nc"
 
 
-def exactly(own, shared, sign):
+def exactly(scatter, shared, sign):
     """Return mean and sd of the logarithm of what is shared, by quadrature over it."""
     x = np.log(shared[0]) + np.linspace(-6, 6, 4001) * shared[1]
-    middle = np.log(own[0]) * -sign + sign * x  # of the logarithm of a life
+    middle = np.log(scatter[0]) * -sign + sign * x  # of the logarithm of a life
     log_posterior = norm.logpdf(x, np.log(shared[0]), shared[1])
     for low, high in LIVES:
         if low == high:
-            log_posterior += norm.logpdf(np.log(low), middle, own[1])
+            log_posterior += norm.logpdf(np.log(low), middle, scatter[1])
             continue
         with np.errstate(divide="ignore"):
             log_posterior += np.log(
-                norm.cdf(np.log(high), middle, own[1]) - norm.cdf(np.log(low), middle, own[1])
+                norm.cdf(np.log(high), middle, scatter[1])
+                - norm.cdf(np.log(low), middle, scatter[1])
             )
     weights = np.exp(log_posterior - log_posterior.max())
     mean = np.average(x, weights=weights)
@@ -47,8 +48,8 @@ def exactly(own, shared, sign):
 def test_what_is_shared_is_learnt_from_recorded_lives(folder, shared, samples):
     prior = wear(samples=samples, units=len(LIVES), **{shared: "shared"})
     posterior = update(prior, record(folder))
-    law, own, sign = (RATE, DEPTH, -1) if shared == "rate" else (DEPTH, RATE, 1)
-    mean, sd = exactly(own, law, sign)
+    law, scatter, sign = (RATE, DEPTH, -1) if shared == "rate" else (DEPTH, RATE, 1)
+    mean, sd = exactly(scatter, law, sign)
     x, weights = np.log(posterior[shared].values), posterior["weight"].values
     middle = np.average(x, weights=weights)
     assert middle == pytest.approx(mean, abs=0.15 * sd)
