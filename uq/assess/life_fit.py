@@ -128,7 +128,8 @@ def _fit_by_likelihood(law: str, element: Element, independent: bool, least: int
     lives = LifeIntervals(*(column[:MAX_ROWS] for column in sample.lives))
     rows, life = len(lives), element.at_least[:MAX_ROWS]
     ended = (~element.censored | element.within_interval)[element.present][:MAX_ROWS]
-    if problem := _problem(life, ended, independent, least, law == "exponential"):
+    zeros = 0 if law == "exponential" else _zeros(element)
+    if problem := _problem(life, ended, independent, zeros, least):
         return Fit(rows, refused=problem)
     try:
         fitted = fit_law(law, lives, B_LIVES)
@@ -151,7 +152,7 @@ _Lives = tuple[Floats, Mask]
 def _fit(law: str, element: Element, independent: bool) -> Fit:
     life = element.at_least[:MAX_ROWS]
     ended, n = ~element.censored[element.present][:MAX_ROWS], len(life)
-    if problem := _problem(life, ended, independent):
+    if problem := _problem(life, ended, independent, _zeros(element)):
         return Fit(n, refused=problem)
     family = FAMILIES[law]
     seen = _sorted(np.log(life)[None], ended[None])
@@ -188,22 +189,27 @@ def _fit(law: str, element: Element, independent: bool) -> Fit:
     )
 
 
+def _zeros(element: Element) -> int:
+    """Return the number of rows, of those used, that are known to have ended at once."""
+    return int(((element.values <= 0) & ~element.censored)[element.present][:MAX_ROWS].sum())
+
+
 def _problem(
     life: Floats,
     ended: Mask,
     independent: bool,
+    zeros: int,
     least: int = MIN_ENDED,
-    may_be_zero: bool = False,
 ) -> str:
-    """Return why no law can be fitted, or ""."""
+    """Return why no law can be fitted, or ""; `zeros` is the number of lives that it excludes."""
     if not independent:
         return INDEPENDENT_ONLY
     never = int((np.isposinf(life) & ended).sum())
     if never:
         endless = counted(never, "never ends", "never end")
         return f"of {len(life)} rows {endless}, which this law excludes"
-    if none := int(((life <= 0) & ended).sum()) if least and not may_be_zero else 0:
-        return f"{counted(none, 'row has', 'rows have')} no positive life, which this law excludes"
+    if zeros:
+        return f"{counted(zeros, 'row has', 'rows have')} no positive life, which this law excludes"
     if ended.sum() < least:
         return f"only {counted(int(ended.sum()), 'row')} ended; {MIN_ENDED} are needed"
     if len(np.unique(life[ended])) < least:

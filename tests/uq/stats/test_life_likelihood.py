@@ -3,7 +3,6 @@
 import lifelines
 import numpy as np
 import pytest
-import surpyval
 from scipy import stats
 from surpyval.datasets import load_bearing_failures, load_bofors_steel
 
@@ -109,32 +108,6 @@ def test_censored_lives_as_lifelines_fits_them():
     fitted = fit_law("weibull", data, {})
     assert fitted.parameters["shape"].value == pytest.approx(weibull.rho_, rel=1e-4)
     assert fitted.log_likelihood == pytest.approx(weibull.log_likelihood_, abs=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("law", "other"),
-    [
-        ("weibull", surpyval.Weibull),
-        ("lognormal", surpyval.LogNormal),
-        ("gamma", surpyval.Gamma),
-        ("exponential", surpyval.Exponential),
-    ],
-)
-def test_late_entry_and_intervals_as_surpyval_fits_them(law, other):
-    rng = np.random.default_rng(3)
-    life, entered = rng.weibull(1.8, 900) * 100, np.maximum(rng.uniform(-40, 80, 900), 0)
-    kept = life > entered
-    life, entered = life[kept][:150], entered[kept][:150]
-    low = np.maximum(np.floor(life / 25) * 25, entered)
-    high = np.floor(life / 25) * 25 + 25
-    exact = np.arange(150) % 3 == 0
-    low, high = np.where(exact, life, low), np.where(exact, life, high)
-    fitted = fit_law(law, lives(low, high, entered), {})
-    second = other.fit(x=np.column_stack([low, high]), tl=entered)
-    assert fitted.log_likelihood >= -float(second.neg_ll()) - 1e-4
-    mine = np.sort([estimate.value for estimate in fitted.parameters.values()])
-    if law in ("weibull",):
-        assert mine == pytest.approx(np.sort(second.params), rel=1e-3)
 
 
 def test_the_interval_of_an_exponential_mean_is_where_the_likelihood_ratio_is_critical():
