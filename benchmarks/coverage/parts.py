@@ -69,10 +69,10 @@ PARTS = {
     },
     "fit-wrong": Part(curves.wrong_fits, 1000),
     **{
-        f"recorded-{kind}": Part(partial(recorded.lives, kind, 60), 400 if kind == "own" else 2000)
+        f"recorded-{kind}": Part(partial(recorded.lives, kind, 60), 150 if kind == "own" else 500)
         for kind in recorded.KINDS
     },
-    "recorded-many": Part(partial(recorded.lives, "late", 200), 500),
+    "recorded-many": Part(partial(recorded.lives, "late", 200), 200),
     **{
         f"recorded-causes-{kind}": Part(partial(recorded.causes, kind, 100))
         for kind in ("censored", "late")

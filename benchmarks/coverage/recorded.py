@@ -149,11 +149,11 @@ LAWS = {
 }
 
 
+EVERY = ("censored", "late", "common")
 FITS = (
-    *((law, 60, 1000, ("censored", "late", "common")) for law in ("weibull", "lognormal", "gamma")),
-    ("exponential", 60, 1000, ("censored", "late", "common")),
-    ("weibull-3", 60, 500, ("censored", "common")),
-    ("weibull-mixture", 200, 400, ("censored",)),
+    *((law, 60, 300, EVERY) for law in ("weibull", "lognormal", "gamma", "exponential")),
+    ("weibull-3", 60, 300, ("censored", "common")),
+    ("weibull-mixture", 200, 200, ("censored",)),
 )
 """Laws with their rows, repetitions and kinds of observation."""
 

@@ -21,6 +21,7 @@ from uq.learning.posterior_result import as_result, inspections_of, prior_of
 from uq.result.result import Result
 from uq.result.result_file import open_result
 from uq.result.weights import MODEL_ERROR, has_weights
+from uq.sampling.levels import SHARED
 from uq.study.definition import Study
 from uq.study.row_sampling import rows_per_sample
 
@@ -152,7 +153,13 @@ def learn(
     New are inspections, or lives from the field of a lifetime.
     """
     if isinstance(new, Result):
-        new = of_record(new, opened.lifetime_like(new, life, "--life").name)
+        name = opened.lifetime_like(new, life, "--life").name
+        if SHARED not in opened.levels_that_vary():
+            raise InputError(
+                f"{new.file}: units share no uncertain input, so that recorded lives teach nothing"
+                " of other units; set level = 'shared' of what they have in common"
+            )
+        new = of_record(new, name)
     if why := opened.why_no_statistics:
         raise InputError(f"uq update: the rows of a '{opened.design_name}' design {why}")
     if output is not None and Path(output).is_file():

@@ -44,9 +44,11 @@ def exactly(scatter, shared, sign):
     return mean, np.average((x - mean) ** 2, weights=weights) ** 0.5
 
 
-@pytest.mark.parametrize(("shared", "samples"), [("rate", 1500), ("depth", 300)])
-def test_what_is_shared_is_learnt_from_recorded_lives(folder, shared, samples):
-    prior = wear(samples=samples, units=len(LIVES), **{shared: "shared"})
+@pytest.mark.parametrize(
+    ("shared", "samples", "units"), [("rate", 800, len(LIVES)), ("depth", 1000, 1)]
+)
+def test_what_is_shared_is_learnt_from_recorded_lives(folder, shared, samples, units):
+    prior = wear(samples=samples, units=units, **{shared: "shared"})
     posterior = update(prior, record(folder))
     law, scatter, sign = (RATE, DEPTH, -1) if shared == "rate" else (DEPTH, RATE, 1)
     mean, sd = exactly(scatter, law, sign)
@@ -73,9 +75,10 @@ def refused(*arguments, **options):
 
 
 def test_a_record_that_is_no_evidence_is_refused_in_one_line(folder):
-    prior = wear(samples=100)
+    prior = wear(samples=100, rate="shared")
     path = record(folder)
     assert "set [design] units = 6" in refused(prior, path)
+    assert "units share no uncertain input" in refused(wear(samples=100), path)
     assert "has no lives from the field" in refused(prior, prior)
     assert "no such output 'rate'" in refused(prior, path, life="rate")
     (folder / "late.csv").write_text("life,entered\n4,1\n5,0\n")
