@@ -81,8 +81,11 @@ _NUMBERS = COLUMNS[3:]
 _DETECTION = ("detection_50", "detection_90")
 _SEPARATE = "separate cells by commas, and write a decimal point in numbers"
 
-EXACT = 0.01
-"""Coefficient of variation with which an exact life of a record counts as measured."""
+EXACT = 0.05
+"""Coefficient of variation with which an exact life of a record counts as measured.
+
+The density of computed lives is thus smoothed, by less than lives scatter.
+"""
 
 Given = str | Path | xr.Dataset | Sequence[Mapping[str, object]]
 """A file of inspections, CSV or TOML, tables with the same columns, or lives from the field."""

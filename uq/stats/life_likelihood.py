@@ -411,9 +411,13 @@ def _highest(likelihood: _Likelihood) -> tuple[Floats, float]:
                 proper.append((value, theta))
     if not proper:
         raise NoMaximumError(reasons[0] if reasons else "the likelihood has no maximum")
-    value, theta = max(proper, key=lambda pair: pair[0])
     near = len(law.starts) > 2
-    theta, value = likelihood.maximise(theta, lambda free: free, is_near=near, gradient=1e-7)
+    for _, start in sorted(proper, key=lambda pair: -pair[0]):
+        theta, value = likelihood.maximise(start, lambda free: free, is_near=near, gradient=1e-7)
+        if not (why := _improper(likelihood, theta)):
+            break
+    else:
+        raise NoMaximumError(why)
     if law.names[0] == "share" and theta[4] < 0:  # the first population ends first
         theta = np.array([theta[0] + theta[4], -theta[1], theta[3], theta[2], -theta[4]])
     return theta, value

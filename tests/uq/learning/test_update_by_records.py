@@ -1,15 +1,19 @@
 """Lives from the field as evidence: posteriors in closed form, and what is refused."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from learnt_studies import DEPTH, RATE, wear
 from scipy.stats import norm
 
-import uq
+import uq as api
 from uq.errors import InputError
 from uq.explore.updating import update
 from uq.files.whole_files import write_result
 from uq.result.result import Result
+
+HOUSE = Path(__file__).parents[3]
 
 LIVES = [
     (4.1e5, 4.1e5), (7.3e5, 7.3e5), (0, 5e5), (5e5, 1e6), (5e5, 1e6), (8e5, np.inf), (0, np.inf),
@@ -20,7 +24,7 @@ LIVES = [
 def record(folder, lives=LIVES, name="rods"):
     lines = "".join(f"{low},{high}\n" for low, high in lives)
     (folder / f"{name}.csv").write_text(f"low,high\n{lines}")
-    ds = uq.import_lives(folder / f"{name}.csv", "life", unit="s", low="low", high="high")
+    ds = api.import_lives(folder / f"{name}.csv", "life", unit="s", low="low", high="high")
     write_result(ds, folder / f"{name}.nc")
     return folder / f"{name}.nc"
 
@@ -82,9 +86,53 @@ def test_a_record_that_is_no_evidence_is_refused_in_one_line(folder):
     assert "has no lives from the field" in refused(prior, prior)
     assert "no such output 'rate'" in refused(prior, path, life="rate")
     (folder / "late.csv").write_text("life,entered\n4,1\n5,0\n")
-    late = uq.import_lives(folder / "late.csv", "life", unit="s", entered="entered")
+    late = api.import_lives(folder / "late.csv", "life", unit="s", entered="entered")
     assert "rows entered late" in refused(prior, late)
     (folder / "cycles.csv").write_text("life [cycles]\n4\n5\n")
-    cycles = uq.import_lives(folder / "cycles.csv", "life")
+    cycles = api.import_lives(folder / "cycles.csv", "life")
     assert "are in 'cycles', 'life' in 's'" in refused(prior, cycles)
     assert Result(cycles).recorded_life.name == "life"
+
+
+TUBES = """seen intact [years],seen worn [years]
+0,20
+10,20
+10,20
+20,30
+20,30
+20,
+20,
+30,
+30,
+30,
+30,
+30,
+30,
+30,
+30,
+30,
+"""
+LIFE = "first_time_to_depth[depth=0.000436]"
+
+
+@pytest.mark.slow
+def test_tubes_of_a_plant_are_fitted_compared_and_learnt_from(uq, folder):
+    level = {"uncertain.wear_coefficient.level": "shared", "design.samples": 150}
+    study = api.load_study(HOUSE / "studies/tube-antivibration-bar.toml").with_changes(level)
+    api.run(study, folder / "study.nc", workers=0)
+    (folder / "tubes.csv").write_text(TUBES)
+    names = ("--life", "tube", "--low", "seen intact", "--high", "seen worn")
+    for arguments in (
+        ("import", "tubes.csv", "-o", "tubes.nc", *names),
+        ("summary", "tubes.nc", "--fits"),
+        ("compare", "tubes.nc", "study.nc", "--output", LIFE),
+        ("update", "study.nc", "tubes.nc", "-o", "after.nc"),
+    ):
+        ended = uq(*arguments)
+        assert (ended.code, ended.err) == (0, ""), arguments
+    before = api.open_result("study.nc")["wear_coefficient"].values
+    after = api.open_result("after.nc")
+    mean, spread = np.average(after["wear_coefficient"], weights=after["weight"]), before.std()
+    off = after["wear_coefficient"].values - mean
+    sd = np.average(off**2, weights=after["weight"]) ** 0.5
+    assert 8e-15 < mean < 20e-15 and sd < spread / 2
