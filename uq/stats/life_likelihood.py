@@ -6,7 +6,8 @@ without bounds; intervals are those that the likelihood ratio does not reject.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import exp, inf, isfinite, log, log1p, nan, sqrt
+from math import exp, inf, isfinite, isnan, log, log1p, nan, sqrt
+from typing import Any
 
 import numpy as np
 from scipy import special
@@ -220,7 +221,8 @@ class LawFit:
     law : LifeLaw
     log_likelihood : float
     parameters, quantiles : dict of str to Estimate
-        With profile-likelihood intervals; an end is NaN where the likelihood ratio never rejects.
+        With profile-likelihood intervals; an end is NaN where the likelihood ratio never rejects,
+        or where the likelihood is unbounded before it does.
     ended_by : callable
         Times -> P(T <= t) of the law.
     """
@@ -311,7 +313,9 @@ class _Likelihood:
             return -self(build(free))
 
         if is_near:
-            options = {"gtol": gradient} | ({} if inverse is None else {"hess_inv0": inverse})
+            options: Any = {"gtol": gradient}
+            if inverse is not None:
+                options["hess_inv0"] = inverse
             result = optimize.minimize(loss, start, method="BFGS", options=options)
             if result.fun < _WORST:
                 return np.asarray(result.x), -float(result.fun)
@@ -412,8 +416,8 @@ def _highest(likelihood: _Likelihood) -> tuple[Floats, float]:
     if not proper:
         raise NoMaximumError(reasons[0] if reasons else "the likelihood has no maximum")
     near = len(law.starts) > 2
-    for _, start in sorted(proper, key=lambda pair: -pair[0]):
-        theta, value = likelihood.maximise(start, lambda free: free, is_near=near, gradient=1e-7)
+    for _, coarse in sorted(proper, key=lambda pair: -pair[0]):
+        theta, value = likelihood.maximise(coarse, lambda free: free, is_near=near, gradient=1e-7)
         if not (why := _improper(likelihood, theta)):
             break
     else:
@@ -428,13 +432,24 @@ def _improper(likelihood: _Likelihood, theta: Floats) -> str:
     law, others = likelihood.law, theta[1:]
     if abs(theta[0]) > 15:
         return "the likelihood has no maximum: it increases as the scale grows"
+    if law.has_threshold and others[0] < -8:
+        return "the likelihood is largest with a threshold of 0: take the law without"
+    if why := _degenerate(likelihood, others):
+        return why
+    curvature = _curvature(likelihood, theta)
+    if not np.isfinite(curvature).all() or np.linalg.eigvalsh(curvature).max() > -1e-6:
+        return "the likelihood has no unique maximum: it is flat along a combination of parameters"
+    return ""
+
+
+def _degenerate(likelihood: _Likelihood, others: Floats) -> str:
+    """Return why the likelihood is unbounded near parameters, or ""."""
+    law = likelihood.law
     if any(others[place] > _STEEPEST for place in law.steep) or (
         law.names == ("median", "sigma") and others[0] < -_STEEPEST
     ):
         return "the likelihood has no maximum: it increases as all lives become equal"
     if law.has_threshold:
-        if others[0] < -8:
-            return "the likelihood is largest with a threshold of 0: take the law without"
         if others[0] > 8 or others[1] <= 0:
             return "the likelihood has no maximum: it increases as the threshold reaches a life"
     if law.names[0] == "share":
@@ -443,9 +458,6 @@ def _improper(likelihood: _Likelihood, theta: Floats) -> str:
             return "the likelihood has no maximum: one population shrinks to a single life"
         if min(others[1], others[2]) < -2 or abs(others[3]) > 7:
             return "the likelihood has no maximum: one population spreads over all times"
-    curvature = _curvature(likelihood, theta)
-    if not np.isfinite(curvature).all() or np.linalg.eigvalsh(curvature).max() > -1e-6:
-        return "the likelihood has no unique maximum: it is flat along a combination of parameters"
     return ""
 
 
@@ -539,6 +551,10 @@ def _profile(
         with np.errstate(all="ignore"):
             return build(float(back(at)), given)
 
+    others = list[Floats]()
+    if likelihood.law.has_threshold:  # several maxima: also from the largest, and a threshold of 0
+        others = [theta[free_places]]
+        others += [np.where(np.array(free_places) == 1, -8.0, others[0])] * (place != 1)
     inverse = _inverse_information(
         _curvature(lambda free: likelihood(whole(centre, free)), theta[free_places])
     )
@@ -550,10 +566,21 @@ def _profile(
             (before, start), (last, free) = path[-2:] if len(path) > 1 else path * 2
             if last != before:
                 free = free + (at - last) / (last - before) * (free - start)
-            free, reached = likelihood.maximise(
-                free, lambda free: whole(at, free), is_near=True, inverse=inverse
-            )
-            path.append((at, free))
+            maxima = [
+                likelihood.maximise(
+                    begin, lambda free: whole(at, free), is_near=True, inverse=inverse
+                )
+                for begin in (free, *others)
+            ]
+            bounded = [
+                (reached, place)
+                for place, (free, reached) in enumerate(maxima)
+                if not _degenerate(likelihood, whole(at, free)[1:])
+            ]
+            if not bounded:
+                return nan
+            reached, place = max(bounded)
+            path.append((at, maxima[place][0]))
             return sqrt(max(2 * (best - reached), 0.0))
 
         inner, outer, at_inner, at_outer = centre, nan, 0.0, nan
@@ -571,6 +598,10 @@ def _profile(
                 outer, at_outer = at, height
         for _ in range(60):
             share = min(max((critical - at_inner) / (at_outer - at_inner), 0.02), 0.98)
+            if isnan(at_outer):  # halve the way to where the likelihood is unbounded
+                share = 0.5
+                if abs(outer - inner) < 1e-3:
+                    return nan
             at = inner + share * (outer - inner)
             height = root(at)
             if abs(height - critical) < 2e-4 or abs(outer - inner) < 1e-9:
