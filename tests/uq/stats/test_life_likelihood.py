@@ -181,3 +181,14 @@ def test_every_law_is_a_distribution():
         assert np.exp(law.log_density(w, others)) == pytest.approx(slope, rel=1e-3), name
         middle = law.quantile(0.5, others)
         assert float(law.log_survival(np.array([middle]), others)[0]) == pytest.approx(np.log(0.5))
+
+
+def test_an_interval_contains_what_a_threshold_of_zero_allows():
+    three = fit_law("weibull-3", absorbers(), {"B10": 0.1})
+    two = fit_law("weibull", absorbers(), {"B10": 0.1})
+    assert 2 * (three.log_likelihood - two.log_likelihood) < 3.84
+    low, high = three.quantiles["B10"].low, three.quantiles["B10"].high
+    assert low < two.quantiles["B10"].value < high
+    # Where the law without threshold has the largest likelihood, the ends are nearly its own.
+    assert low == pytest.approx(two.quantiles["B10"].low, rel=3e-3)
+    assert three.parameters["shape"].low > 1  # below, the likelihood is unbounded
