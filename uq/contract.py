@@ -122,7 +122,8 @@ class Output:
         censored, so that every censored row would end later.
     causes : tuple of str
         For lifetimes only: the events that may end it. The model then has the category
-        ``<name>_cause``, the cause that ended the life of each row: -1 if it has not ended.
+        ``<name>_cause``, the cause that ended the life of each row, or why it never ends; -1 if it
+        is censored, or no cause is known.
     may_be_between : bool
         For lifetimes only: ``batch`` also returns ``<name>_high``, the upper bound of a life known
         to end between two times; +inf or the life itself for all others. The value is then the

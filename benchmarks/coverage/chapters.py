@@ -17,6 +17,7 @@ CHAPTERS = {
         r"(Life (that may never end|censored)|60 % never end)(?!.*groups)"
     ),
     "Laws fitted to lives": r"(Weibull|Lognormal|Gamma) life, (60 indep|shape)|Life with .* infant",
+    "Lives from the field": r"Recorded",
     "Bands for the entire curve of a life": r"Weibull life, ",
     "Few hits, and failed rows": (
         r"A share of few hits|Event of|Two regimes, one|\d+ independent rows, .* fail"

@@ -10,6 +10,7 @@ from uq.assess.life_fit import fits_of
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.assess.survival import survival
 from uq.result.elements import elements_of
+from uq.stats.location_scale import FAMILIES
 
 EARLY = 0.05
 """Share of lives that end by infant mortality."""
@@ -41,7 +42,8 @@ def wrong_fits(repetitions):
         rng = np.random.default_rng(1)
         for _ in range(repetitions):
             ds = with_life(law.rvs(FIT_ROWS, random_state=rng))
-            for family, fit in fits_of(*elements_of(ds, ["life"]), independent=True).items():
+            element = next(elements_of(ds, ["life"]))
+            for family, fit in fits_of(element, independent=True, laws=[*FAMILIES]).items():
                 tally.add(f"{family} refused", 1.0, 1.0, 2.0 if fit.refused else 0.0)
                 if not fit.refused:
                     for label, p in B_LIVES.items():

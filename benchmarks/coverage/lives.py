@@ -164,7 +164,7 @@ def fits(law, censored, repetitions):
     )
     for ds in repeated(study, repetitions):
         ds = _cut(ds, truth.ppf(0.7)) if censored else ds
-        fit = fits_of(*elements_of(ds, ["life"]), independent=True)[law]
+        fit = fits_of(*elements_of(ds, ["life"]), independent=True, laws=[law])[law]
         tally.add("not refused, where the law is true", 1.0, 1.0, 2.0 - bool(fit.refused) * 2)
         if fit.refused:
             continue

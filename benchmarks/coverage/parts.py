@@ -23,6 +23,7 @@ from benchmarks.coverage import (
     nested,
     noise,
     plain,
+    recorded,
     scaled,
     stopping,
     tails,
@@ -67,6 +68,20 @@ PARTS = {
         for censored in (False, True)
     },
     "fit-wrong": Part(curves.wrong_fits, 1000),
+    **{
+        f"recorded-{kind}": Part(partial(recorded.lives, kind, 60), 150 if kind == "own" else 500)
+        for kind in recorded.KINDS
+    },
+    "recorded-many": Part(partial(recorded.lives, "late", 200), 200),
+    **{
+        f"recorded-causes-{kind}": Part(partial(recorded.causes, kind, 100))
+        for kind in ("censored", "late")
+    },
+    **{
+        f"recorded-{law}-{kind}": Part(partial(recorded.fits, law, kind, rows), repetitions)
+        for law, rows, repetitions, kinds in recorded.FITS
+        for kind in kinds
+    },
     "bands": Part(curves.bands, 1000),
     **{
         f"bands-censored-{rows}": Part(partial(curves.censored_bands, rows), 1000)

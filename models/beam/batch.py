@@ -184,6 +184,7 @@ def _in_units(
     with np.errstate(divide="ignore"):
         linear = depths / (fastest * p.initial_gap)[:, None]
     first_reached = reached[:, 2]
+    earlier = np.where(reached[:, :2], time[:, :2], np.inf).argmin(axis=1)
     outputs = {
         "work_rate": work * to_watt,
         "work_rate_error": s.response.error * to_watt,
@@ -196,6 +197,7 @@ def _in_units(
         "first_time_to_depth": time[:, 2],
         "first_time_to_depth_censored": censored[:, 2],
         "first_time_to_depth_error": error[:, 2],
+        "first_time_to_depth_cause": np.where(first_reached, earlier, -1).astype(np.int8),
         "linear_time_to_depth": linear,
         "lifetime_ratio": np.divide(
             linear,

@@ -78,6 +78,7 @@ OUTPUTS: Mapping[str, Output] = {
         accuracy="accuracy",
         never_known_at_once=False,
         scales=scales,
+        causes=SITES,
     ),
     "first_time_to_depth_error": Output(
         "s",

@@ -73,6 +73,8 @@ class Drive(NamedTuple):
         By the mean rates, in the sense of 90 % intervals, and by what is linear between them.
     lost : bool
         Whether a response on the way could not be computed.
+    cold_speed : float
+        Velocity with a cold coil where the mole is held [m s-1]; NaN if it is not held, or lost.
     """
 
     distance: Course
@@ -82,6 +84,7 @@ class Drive(NamedTuple):
     warmth_errors: list[float]
     speed_errors: list[float]
     lost: bool
+    cold_speed: float
 
 
 class _Follower:
@@ -298,7 +301,7 @@ def drive(task: Task) -> Generator[tuple[float, float], Rates, Drive]:
     way, warmth = f.way, f.warmth
     is_heated = task.thermal_resistance > 0
     constant = task.thermal_resistance * task.thermal_capacity  # [s]
-    here = yield 0.0, 0.0
+    cold = here = yield 0.0, 0.0
     most, asked = here.power * task.thermal_resistance, 1
     if task.temperatures:
         most = min(most, task.temperatures[-1])
@@ -388,4 +391,9 @@ def drive(task: Task) -> Generator[tuple[float, float], Rates, Drive]:
             f.warmths[i], f.speeds[i] = warmth.here, here.speed
     is_lost = math.isnan(here.speed + here.power) or asked > _MOST
     warmth_errors, speed_errors = f.errors()
-    return Drive(way, warmth, f.warmths, f.speeds, warmth_errors, speed_errors, is_lost)
+    cold_speed = math.nan
+    if NEVER in way.fates:
+        if is_heated and task.changing > 0:
+            cold = yield min(way.here, task.changing), 0.0
+        cold_speed = cold.speed if is_heated else 0.0
+    return Drive(way, warmth, f.warmths, f.speeds, warmth_errors, speed_errors, is_lost, cold_speed)

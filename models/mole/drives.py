@@ -7,11 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.mole.drive import COPPER, Drive, Rates, Task, drive
-from models.mole.parameters import AS_PRINTED, FORMULATIONS, Rows, Settings
+from models.mole.parameters import (
+    AS_PRINTED,
+    BY_DISTANCE,
+    BY_HEAT,
+    BY_REFUSAL,
+    FORMULATIONS,
+    Rows,
+    Settings,
+)
 from models.mole.response.machines import Machines
 from models.mole.response.measured import Response
 from models.mole.response.settled import mean_rate, respond
-from models.numerics.course import REACHED, Course
+from models.numerics.course import NEVER, REACHED, Course
 
 _STILL = 1e-7
 """Mean velocity [m s-1] below which motion that repeats is not told from standing still; or the
@@ -83,6 +91,7 @@ def drives(
     outputs: dict[str, NDArray[Any]] = {}
     if settings.distance:
         outputs |= _times("distance", [way and way.distance for way in ways], settings)
+        outputs["time_to_distance_cause"] = _causes(ways, outputs["time_to_distance_censored"])
     if settings.temperature:
         outputs |= _times("temperature", [way and way.temperature for way in ways], settings)
         none = [np.nan] * len(settings.temperature)
@@ -125,6 +134,20 @@ def _rates(resistance: Any, response: Response, settings: Settings) -> NDArray[n
     squared, squared_error = mean_rate(response.squared, response.time, repeats)
     power, power_error = resistance * squared, resistance * squared_error
     return np.stack([speed, speed_error, power, power_error], axis=1)
+
+
+def _causes(ways: list[Drive | None], censored: NDArray[np.bool_]) -> NDArray[np.int8]:
+    """Return what ended each drive, or holds a mole for ever; -1 where neither is known."""
+    causes = np.full(censored.shape, -1, np.int8)
+    for i, way in enumerate(ways):
+        if way is None:
+            continue
+        fates = np.array(way.distance.fates)
+        held = BY_HEAT if way.cold_speed > 0 else BY_REFUSAL
+        causes[i, fates == REACHED] = BY_DISTANCE
+        causes[i, fates == NEVER] = -1 if np.isnan(way.cold_speed) else held
+    causes[censored] = -1
+    return causes
 
 
 def _times(name: str, courses: list[Course | None], settings: Settings) -> dict[str, NDArray[Any]]:

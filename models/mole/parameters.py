@@ -24,6 +24,9 @@ REGIMES = ("no-impact", "periodic", "quasi-periodic", "chaotic", "undecided", "r
 FORMULATIONS = ("physical", "paper", "as-printed")
 NO_IMPACT, PERIODIC, QUASI_PERIODIC, CHAOTIC, UNDECIDED, ON_STOP = range(6)
 PHYSICAL, PAPERS, AS_PRINTED = range(3)
+CAUSES = ("distance", "refusal", "heat")
+"""Of the end of a drive: it arrives; or it never does, as the ground, or a warm coil, holds it."""
+BY_DISTANCE, BY_REFUSAL, BY_HEAT = range(3)
 
 
 # fmt: off
@@ -218,6 +221,7 @@ OUTPUTS: Mapping[str, Output] = {
         ("distance",),
         success="the distance has been driven",
         never_known_at_once=False,  # whether an irregular mole creeps at all may be undecided
+        causes=CAUSES,
     ),
     "time_to_distance_error": Output(
         "s",

@@ -16,7 +16,7 @@ from uq.assess.statistic import Reader, Statistic
 from uq.assess.summary import REGIME, Shares, Summary, summarise
 from uq.assess.weighted_mixture import as_sample
 from uq.contract import Floats, Output
-from uq.errors import InputError, choices
+from uq.errors import InputError
 from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.stats import two_samples
@@ -319,27 +319,7 @@ def _curves(pair: Pair, elements: list[Element]) -> SurvivalCurves:
 
 def _named_as(record: Result, other: Result, output: str | None) -> Result:
     """Return lives from the field under the name and place of a lifetime of a simulated study."""
-    (mine,) = [name for name, declared in record.outputs.items() if declared.is_lifetime]
-    shown = other.shown_outputs(other.analysis)
-    names = [e.name for e in other.elements(shown) if e.is_lifetime]
-    if output is None and mine in names:
-        output = mine
-    elif output is None and len(names) == 1:
-        output = names[0]
-    elif output is None:
-        raise InputError(
-            f"which lifetime are the lives '{mine}' to be compared with? Add --output NAME"
-            f" (allowed: {choices(names)})"
-        )
-    (element, *others) = other.lifetimes(output)
-    if others:
-        raise InputError(f"--output {output}: name one element, such as '{element.name}'")
-    unit = record.outputs[mine].unit
-    if unit != element.units:
-        raise InputError(
-            f"the lives '{mine}' are in '{unit}', '{element.name}' in '{element.units}';"
-            " import them again with --unit"
-        )
+    mine, element = record.recorded_life.name, other.lifetime_like(record, output, "--output")
     ds = record.dataset
     companions = {name: name.replace(mine, element.output, 1) for name in map(str, ds.data_vars)}
     renamed = {

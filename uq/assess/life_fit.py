@@ -12,6 +12,7 @@ import pandas as pd
 from uq.assess.observed_lives import ObservedLives
 from uq.assess.statistics.quantiles import B_LIVES
 from uq.contract import Floats, Mask
+from uq.errors import InputError, choices, nearest
 from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.stats.estimate import Estimate
@@ -127,7 +128,8 @@ def _fit_by_likelihood(law: str, element: Element, independent: bool, least: int
     lives = LifeIntervals(*(column[:MAX_ROWS] for column in sample.lives))
     rows, life = len(lives), element.at_least[:MAX_ROWS]
     ended = (~element.censored | element.within_interval)[element.present][:MAX_ROWS]
-    if problem := _problem(life, ended, independent, least, law == "exponential"):
+    zeros = 0 if law == "exponential" else _zeros(element)
+    if problem := _problem(life, ended, independent, zeros, least):
         return Fit(rows, refused=problem)
     try:
         fitted = fit_law(law, lives, B_LIVES)
@@ -150,7 +152,7 @@ _Lives = tuple[Floats, Mask]
 def _fit(law: str, element: Element, independent: bool) -> Fit:
     life = element.at_least[:MAX_ROWS]
     ended, n = ~element.censored[element.present][:MAX_ROWS], len(life)
-    if problem := _problem(life, ended, independent):
+    if problem := _problem(life, ended, independent, _zeros(element)):
         return Fit(n, refused=problem)
     family = FAMILIES[law]
     seen = _sorted(np.log(life)[None], ended[None])
@@ -187,22 +189,27 @@ def _fit(law: str, element: Element, independent: bool) -> Fit:
     )
 
 
+def _zeros(element: Element) -> int:
+    """Return the number of rows, of those used, that are known to have ended at once."""
+    return int(((element.values <= 0) & ~element.censored)[element.present][:MAX_ROWS].sum())
+
+
 def _problem(
     life: Floats,
     ended: Mask,
     independent: bool,
+    zeros: int,
     least: int = MIN_ENDED,
-    may_be_zero: bool = False,
 ) -> str:
-    """Return why no law can be fitted, or ""."""
+    """Return why no law can be fitted, or ""; `zeros` is the number of lives that it excludes."""
     if not independent:
         return INDEPENDENT_ONLY
     never = int((np.isposinf(life) & ended).sum())
     if never:
         endless = counted(never, "never ends", "never end")
         return f"of {len(life)} rows {endless}, which this law excludes"
-    if none := int(((life <= 0) & ended).sum()) if least and not may_be_zero else 0:
-        return f"{counted(none, 'row has', 'rows have')} no positive life, which this law excludes"
+    if zeros:
+        return f"{counted(zeros, 'row has', 'rows have')} no positive life, which this law excludes"
     if ended.sum() < least:
         return f"only {counted(int(ended.sum()), 'row')} ended; {MIN_ENDED} are needed"
     if len(np.unique(life[ended])) < least:
@@ -275,7 +282,7 @@ _COLUMNS = [
 ]
 
 
-def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
+def life_fits(result: AnyResult, output: str, laws: Collection[str] = tuple(LAWS)) -> pd.DataFrame:
     """Fit laws to a lifetime by maximum likelihood.
 
     Parameters
@@ -284,6 +291,8 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
         A result of design ``monte-carlo``.
     output : str
         A lifetime, or one element of it.
+    laws : collection of str, optional
+        Names of the laws, by default all.
 
     Returns
     -------
@@ -301,7 +310,7 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     Raises
     ------
     InputError
-        When there is no such output or it is not a lifetime.
+        When there is no such output or law, or the output is not a lifetime.
 
     Notes
     -----
@@ -317,7 +326,8 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
 
     Examples
     --------
-    >>> laws = uq.life_fits(uq.run("studies/exponential-wear.toml"), "life").loc["life"]
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> laws = uq.life_fits(ds, "life", ["weibull", "lognormal"]).loc["life"]
     >>> laws.loc["lognormal", "sigma"].round(1).item()
     0.5
     >>> laws.loc["weibull", "refused"].startswith("rejected")
@@ -325,12 +335,15 @@ def life_fits(result: AnyResult, output: str) -> pd.DataFrame:
     """
     result = Result.of(result)
     result.refuse_if_weighted("laws fitted to lives")
+    for law in laws:
+        if law not in LAWS:
+            raise InputError(f"no such law '{law}'{nearest(law, LAWS)} (allowed: {choices(LAWS)})")
     rows = result.independent
     independent = rows.dependence.is_none
     lines = {
         (element.name, law): _line(fit)
         for element in rows.lifetimes(output)
-        for law, fit in fits_of(element, independent, result.is_field_record).items()
+        for law, fit in fits_of(element, independent, result.is_field_record, laws).items()
     }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "law"])
     return pd.DataFrame(list(lines.values()), index=index, columns=_COLUMNS)

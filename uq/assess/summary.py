@@ -84,9 +84,15 @@ class Described:
 
     @property
     def readable_unit(self) -> ReadableUnit:
-        """The unit in which its values are shown, from the size of its quantiles."""
+        """The unit in which its values are shown, from the size of its quantiles.
+
+        Where censoring leaves all of them open, from their estimates and those of B-lives.
+        """
         quantiles = self.parts.get("quantiles", ())
-        return unit_of(self.units, typical(statistic.estimate.value for statistic in quantiles))
+        size = typical(statistic.estimate.value for statistic in quantiles)
+        guesses = (*quantiles, *self.parts.get("b_lives", ()))
+        lives = (guess for guess in guesses if guess.unit == self.units)
+        return unit_of(self.units, size or typical(life.best.estimate.value for life in lives))
 
     def find(self, *key: str) -> Statistic | None:
         """Return the statistic with this key."""

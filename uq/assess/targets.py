@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from uq.assess.sample import censored_before
-from uq.contract import LARGEST_VALUE, Floats
+from uq.contract import LARGEST_VALUE, Floats, cause_name
 from uq.result.element import Element
 from uq.result.elements import flags
 from uq.result.result import Result
@@ -366,10 +366,24 @@ def category_targets(result: Result, output: str) -> Iterator[IndexTarget]:
     ------
     IndexTarget
         NaN for rows that failed before they had a category; a sound row of no category has none.
+        Refused of causes where a life is censored: another might have ended it later.
     """
-    lost = result.failed
+    lost, category = result.failed, output.partition("[")[0]
+    life = next((name for name in result.outputs if cause_name(name) == category), "")
     for name, codes in result.codes(output).items():
-        for code, label in flags(result.dataset[output.partition("[")[0]]):
+        refused = _unknown_causes(result, name.replace(category, life, 1)) if life else ""
+        for code, label in flags(result.dataset[category]):
             if code >= 0 and (hits := codes == code).any():
                 values = np.where((codes < 0) & lost, np.nan, hits)
-                yield IndexTarget(f"P({name}={label})", None, values, event=True)
+                yield IndexTarget(f"P({name}={label})", None, values, refused, event=True)
+
+
+def _unknown_causes(result: Result, life: str) -> str:
+    (element,) = result.named_elements(life)
+    unknown = int((element.censored & ~element.within_interval).sum())
+    if not unknown:
+        return ""
+    return (
+        f"{counted(unknown, 'row is', 'rows are')} censored, and what would end it is not known;"
+        " ask for P(T < t) by a threshold in [analysis], or lengthen the horizon"
+    )

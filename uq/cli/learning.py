@@ -39,6 +39,7 @@ def update(
     rows: int | None,
     model_error: float | None,
     by: Sequence[str],
+    life: str | None,
     model: str | None,
     options: RunOptions,
     quiet: bool,
@@ -63,7 +64,7 @@ def update(
         if rows is not None and not is_study(source):
             say_when_interrupted("interrupted; the same command resumes, with the new rows so far")
             budget = Budget(rows, replace(options, progress=show), output, model)
-        posterior = Result(learn(result, new, output, model_error, budget))
+        posterior = Result(learn(result, new, output, model_error, budget, life))
     answer = learnt(posterior, times)
     if json:
         print_json(learnt_facts(answer).json)

@@ -13,7 +13,7 @@ from uq.execution.runner import output_path, run_study
 from uq.explore.new_rows import Budget, enlarged, why_no_new_rows
 from uq.files.whole_files import check_target, write_result
 from uq.learning.importance import own_rows
-from uq.learning.inspections import MOST_CV, Given, Inspection, all_of, read
+from uq.learning.inspections import MOST_CV, Given, Inspection, all_of, of_record, read
 from uq.learning.observables import as_named, observables_of
 from uq.learning.posterior import posterior
 from uq.learning.posterior_checks import censoring, distrust
@@ -21,6 +21,7 @@ from uq.learning.posterior_result import as_result, inspections_of, prior_of
 from uq.result.result import Result
 from uq.result.result_file import open_result
 from uq.result.weights import MODEL_ERROR, has_weights
+from uq.sampling.levels import SHARED
 from uq.study.definition import Study
 from uq.study.row_sampling import rows_per_sample
 
@@ -34,6 +35,7 @@ def update(
     *,
     rows: int | None = None,
     model_error: float | None = None,
+    life: str | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
     model: str | None = None,
@@ -49,7 +51,7 @@ def update(
         A CSV file with the columns ``unit``, ``output``, ``kind``, and those of ``time`` (in the
         unit of the life), ``value``, ``sd``, ``cv``, ``detection_50`` and ``detection_90`` that are
         needed; a TOML file with tables ``[[inspection]]`` of these entries; or the tables
-        themselves.
+        themselves. Or lives from the field, of `import_lives` or its file: each row is a unit.
     output : path-like, optional
         Where to write the posterior; by default it is not written.
     rows : int, optional
@@ -58,6 +60,9 @@ def update(
     model_error : float, optional
         Coefficient of variation of the model error: lognormal with ``cv`` and detection curves,
         normal with ``sd`` and exact limits; default 0, or the value of an earlier update.
+    life : str, optional
+        Lifetime that lives from the field are of; by default that of the same name, or the only
+        one.
     workers, scheduler
         As in `uq.run`.
     model : str, optional
@@ -104,7 +109,7 @@ def update(
         check_target(Path(output), 0)
     options = RunOptions(workers, scheduler)
     ds, budget = prior(source, rows, options, output, model)
-    return learn(Result(ds), new, output, model_error, budget)
+    return learn(Result(ds), new, output, model_error, budget, life)
 
 
 def prior(
@@ -137,12 +142,24 @@ def samples_for(study: Study, rows: int) -> int:
 
 def learn(
     opened: Result,
-    new: Sequence[Inspection],
+    new: Sequence[Inspection] | Result,
     output: str | Path | None,
     model_error: float | None,
     budget: Budget | None = None,
+    life: str | None = None,
 ) -> xr.Dataset:
-    """Return the posterior of a result as a result, and write it."""
+    """Return the posterior of a result as a result, and write it.
+
+    New are inspections, or lives from the field of a lifetime.
+    """
+    if isinstance(new, Result):
+        name = opened.lifetime_like(new, life, "--life").name
+        if SHARED not in opened.levels_that_vary():
+            raise InputError(
+                f"{new.file}: units share no uncertain input, so that recorded lives teach nothing"
+                " of other units; set level = 'shared' of what they have in common"
+            )
+        new = of_record(new, name)
     if why := opened.why_no_statistics:
         raise InputError(f"uq update: the rows of a '{opened.design_name}' design {why}")
     if output is not None and Path(output).is_file():

@@ -5,12 +5,16 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from math import isfinite
+from math import inf, isfinite
 from numbers import Real
 from pathlib import Path
 
+import numpy as np
+import xarray as xr
+
 from uq.errors import InputError, nearest, nearest_file
 from uq.files.whole_files import node
+from uq.result.result import Result
 from uq.text.literals import read_number, read_toml, shown
 
 
@@ -77,8 +81,14 @@ _NUMBERS = COLUMNS[3:]
 _DETECTION = ("detection_50", "detection_90")
 _SEPARATE = "separate cells by commas, and write a decimal point in numbers"
 
-Given = str | Path | Sequence[Mapping[str, object]]
-"""A file of inspections, CSV or TOML, or tables with the same columns."""
+EXACT = 0.05
+"""Coefficient of variation with which an exact life of a record counts as measured.
+
+The density of computed lives is thus smoothed, by less than lives scatter.
+"""
+
+Given = str | Path | xr.Dataset | Sequence[Mapping[str, object]]
+"""A file of inspections, CSV or TOML, tables with the same columns, or lives from the field."""
 
 _HEADER = re.compile(r"\s*\[\[\s*[\"']?inspection[\"']?\s*\]\]")
 
@@ -284,8 +294,18 @@ def _curve(curve: Sequence[str], numbers: Mapping[str, float]) -> Iterator[str]:
         )
 
 
-def read(given: Given) -> list[Inspection]:
-    """Return the inspections of a file or of tables."""
+def read(given: Given) -> list[Inspection] | Result:
+    """Return the inspections of a file or of tables, or a record of lives from the field.
+
+    Raises
+    ------
+    InputError
+        One line for each mistake.
+    """
+    if isinstance(given, xr.Dataset) or (
+        isinstance(given, str | Path) and Path(given).suffix.lower() == ".nc"
+    ):
+        return _record(Result.of(given))
     if isinstance(given, str | Path) and Path(given).suffix.lower() != ".toml":
         return read_inspections(Path(given))
     if isinstance(given, str | Path):
@@ -294,6 +314,57 @@ def read(given: Given) -> list[Inspection]:
         inspections = read_tables(given)
     if not inspections:
         raise InputError("there is no inspection")
+    return inspections
+
+
+def _record(record: Result) -> Result:
+    """Return a record of lives, refused where it is none that rows can be weighted by."""
+    if not record.is_field_record:
+        raise InputError(
+            f"{record.file}: has no lives from the field, but rows of"
+            f" '{record.dataset.attrs['model']}'; inspections are CSV, lives come from 'uq import'"
+        )
+    if record.recorded_life.entered is not None:
+        raise InputError(
+            f"{record.file}: rows entered late, and what is known given survival to an entry weighs"
+            " no single row: import it again without --entered, only rows observed from the start"
+        )
+    return record
+
+
+def of_record(record: Result, life: str) -> list[Inspection]:
+    """Return the lives of a record as inspections of a lifetime, each of a unit of its own.
+
+    Parameters
+    ----------
+    record : Result
+        Lives from the field: exact, censored or within intervals.
+    life : str
+        Name of the lifetime.
+
+    Returns
+    -------
+    list of Inspection
+        An exact life is measured with the coefficient of variation `EXACT`; of others it is known
+        that they survived their lower bound and ended by their upper one.
+    """
+    element, name = record.recorded_life, str(record.study.study.name)
+    inspections = []
+    highs = np.where(element.censored, np.inf, element.values)
+    if element.high is not None:
+        highs = np.where(element.censored, element.high, element.values)
+    for row, (low, high) in enumerate(zip(element.values.tolist(), highs.tolist(), strict=True)):
+        unit, where = f"{name} {row}", f"{record.file}, row {row}"
+        if 0 < low == high:
+            measured = Inspection(
+                unit, life, InspectionKind.MEASURED, value=low, cv=EXACT, where=where
+            )
+            inspections.append(measured)
+            continue
+        for kind, time in ((InspectionKind.SURVIVED, low), (InspectionKind.ENDED, high)):
+            is_open = time == 0 if kind is InspectionKind.SURVIVED else time == inf
+            if not is_open:
+                inspections.append(Inspection(unit, life, kind, time, where=where))
     return inspections
 
 

@@ -13,7 +13,7 @@ from uq.contract import Floats, Output
 from uq.errors import InputError, choices
 from uq.learning.inspections import Inspection, InspectionKind
 from uq.learning.integrated_input import free_scales
-from uq.learning.observables import observed
+from uq.learning.observables import Observable, observed
 from uq.learning.posterior_inputs import quantiles
 from uq.learning.posterior_result import as_unit, inspections_of, prior_of
 from uq.result.elements import Element
@@ -183,8 +183,16 @@ def remaining(result: Result, by: Sequence[float] = ()) -> Iterator[Remaining]:
         inspected = {
             inspection: unit for inspection, unit in units.items() if inspection.unit == label
         }
-        if not any(inspection.kind is InspectionKind.ENDED for inspection in inspected):
+        if not any(_has_ended(inspection, observables[inspection]) for inspection in inspected):
             yield from _of_unit(Result(as_unit(result, label)), label, _last_seen(inspected), by)
+
+
+def _has_ended(inspection: Inspection, observable: Observable) -> bool:
+    """Return whether an inspection states the end of a life, or its value."""
+    is_measured = inspection.kind is InspectionKind.MEASURED
+    return inspection.kind is InspectionKind.ENDED or (
+        is_measured and observable.declared.is_lifetime
+    )
 
 
 def _last_seen(units: Mapping[Inspection, str]) -> dict[str, float]:

@@ -54,18 +54,14 @@ class UnitLikelihoods:
     Raises
     ------
     InputError
-        When an inspection does not fit the result, or more units are inspected than samples have.
+        When an inspection does not fit the result, or, with several worlds, more units are
+        inspected than samples have.
     """
 
     def __init__(self, rows: Result, inspections: Sequence[Inspection], model_cv: float):
         self.observables = observed(rows, inspections)
         self.labels = list(dict.fromkeys(inspection.unit for inspection in inspections))
         count, place = len(self.labels), rows.nesting
-        if count > place.units:
-            raise InputError(
-                f"{count} units are inspected, but a sample of this result has {place.units}:"
-                f" set [design] units = {count}"
-            )
         self.inspections = [
             [inspection for inspection in inspections if inspection.unit == label]
             for label in self.labels
@@ -74,6 +70,11 @@ class UnitLikelihoods:
         self.world, self.worlds = np.zeros(len(rows), np.intp), 1
         if shared_inputs(rows, self.scale):
             self.world, self.worlds = place.sample, place.samples
+        if self.worlds > 1 and count > place.units:
+            raise InputError(
+                f"{count} units are inspected, but a sample of this result has {place.units}:"
+                f" set [design] units = {count}"
+            )
         number = np.arange(len(rows))
         self.blocks = [number] * count
         if self.worlds > 1:

@@ -148,6 +148,47 @@ class Result:
             )
 
     @property
+    def recorded_life(self) -> Element:
+        """The lifetime of a record of lives from the field."""
+        (name,) = [name for name, declared in self.outputs.items() if declared.is_lifetime]
+        return self.lifetimes(name)[0]
+
+    def lifetime_like(self, record: "Result", name: str | None, option: str) -> Element:
+        """Return the lifetime of a simulated study that the lives of a record are of.
+
+        Parameters
+        ----------
+        record : Result
+            Lives from the field.
+        name : str or None
+            By default the lifetime of the same name, or the only one shown.
+        option : str
+            Command-line option that gives the name, for messages.
+
+        Raises
+        ------
+        InputError
+            When the lifetime is not named and not unique, or in another unit.
+        """
+        mine = record.recorded_life
+        names = [e.name for e in self.elements(self.shown_outputs(self.analysis)) if e.is_lifetime]
+        if name is None and mine.name not in names and len(names) != 1:
+            raise InputError(
+                f"which lifetime are the lives '{mine.name}' of? Add {option} NAME"
+                f" (allowed: {choices(names)})"
+            )
+        name = name or (mine.name if mine.name in names else names[0])
+        element, *others = self.lifetimes(name)
+        if others:
+            raise InputError(f"{option} {name}: name one element, such as '{element.name}'")
+        if mine.units != element.units:
+            raise InputError(
+                f"the lives '{mine.name}' are in '{mine.units}', '{element.name}' in"
+                f" '{element.units}'; import them again with --unit"
+            )
+        return element
+
+    @property
     def is_random(self) -> bool:
         """Whether rows of the model depend on their seeds."""
         return bool(self.dataset.attrs.get("random"))

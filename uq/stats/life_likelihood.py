@@ -6,7 +6,8 @@ without bounds; intervals are those that the likelihood ratio does not reject.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import exp, inf, isfinite, log, nan, sqrt
+from math import exp, inf, isfinite, isnan, log, log1p, nan, sqrt
+from typing import Any
 
 import numpy as np
 from scipy import special
@@ -94,9 +95,11 @@ def _mixed(w: Floats, others: Floats) -> tuple[float, tuple[float, float], Float
 
 def _mixture_density(w: Floats, others: Floats) -> Floats:
     share, (first, second), later = _mixed(w, others)
-    both = np.stack([_weibull_density(w, first), _weibull_density(later, second) - others[3]])
-    weights = np.log([[share], [1 - share]]) if 0 < share < 1 else np.array([[0.0], [-inf]])
-    return np.asarray(special.logsumexp(both + weights, axis=0))
+    rest = float(special.expit(-others[0]))
+    return np.logaddexp(
+        _weibull_density(w, first) + log(share),
+        _weibull_density(later, second) - others[3] + log(rest),
+    )
 
 
 def _mixture_survival(w: Floats, others: Floats) -> Floats:
@@ -106,19 +109,29 @@ def _mixture_survival(w: Floats, others: Floats) -> Floats:
 
 
 def _mixture_quantile(p: float, others: Floats) -> float:
-    from scipy import optimize  # here: its import takes long
-
-    def excess(logarithm: float) -> float:
-        return -float(np.expm1(_mixture_survival(np.array([exp(logarithm)]), others)[0])) - p
-
-    low, high = -5.0, 5.0
-    while excess(low) > 0 and low > -600:
-        low *= 2
-    while excess(high) < 0 and high < 600:
-        high *= 2
-    if not excess(low) < 0 < excess(high):
-        return nan
-    return exp(float(optimize.brentq(excess, low, high, xtol=1e-13)))
+    """Return where Newton steps in the logarithm of the time end, safeguarded by bisection."""
+    share, (first, second), _ = _mixed(np.ones(1), others)
+    ratio = min(max(float(others[3]), -40.0), 40.0)
+    spread = log(-log1p(-p))
+    # The quantile is between those of the two populations.
+    low, high = sorted((spread / first, ratio + spread / second))
+    x = share * low + (1 - share) * high
+    for _ in range(200):
+        hazards = exp(min(first * x, 700.0)), exp(min(second * (x - ratio), 700.0))
+        alive = share * exp(-hazards[0]), (1 - share) * exp(-hazards[1])
+        excess = 1 - sum(alive) - p
+        slope = alive[0] * first * hazards[0] + alive[1] * second * hazards[1]
+        if excess > 0:
+            high = x
+        else:
+            low = x
+        moved = x - excess / slope if slope > 0 else nan
+        if not low < moved < high:
+            moved = (low + high) / 2
+        if abs(moved - x) <= 1e-14 * max(1.0, abs(x)):
+            break
+        x = moved
+    return exp(min(x, 600.0))
 
 
 def _mixture_reported(scale: float, others: Floats, earliest: float) -> tuple[float, ...]:
@@ -208,7 +221,8 @@ class LawFit:
     law : LifeLaw
     log_likelihood : float
     parameters, quantiles : dict of str to Estimate
-        With profile-likelihood intervals; an end is NaN where the likelihood ratio never rejects.
+        With profile-likelihood intervals; an end is NaN where the likelihood ratio never rejects,
+        or where the likelihood is unbounded before it does.
     ended_by : callable
         Times -> P(T <= t) of the law.
     """
@@ -277,11 +291,18 @@ class _Likelihood:
         return total
 
     def maximise(
-        self, start: Floats, build: Callable[[Floats], Floats], *, is_near: bool = False
+        self,
+        start: Floats,
+        build: Callable[[Floats], Floats],
+        *,
+        is_near: bool = False,
+        inverse: Floats | None = None,
+        gradient: float = 1e-4,
     ) -> tuple[Floats, float]:
         """Return the free parameters with the largest likelihood, and it.
 
-        From a start that is near it, without a simplex.
+        From a start that is near it, without a simplex, until the gradient is small; `inverse` is
+        that of the information there.
         """
         from scipy import optimize  # here: its import takes long
 
@@ -292,7 +313,10 @@ class _Likelihood:
             return -self(build(free))
 
         if is_near:
-            result = optimize.minimize(loss, start, method="BFGS", options={"gtol": 1e-4})
+            options: Any = {"gtol": gradient}
+            if inverse is not None:
+                options["hess_inv0"] = inverse
+            result = optimize.minimize(loss, start, method="BFGS", options=options)
             if result.fun < _WORST:
                 return np.asarray(result.x), -float(result.fun)
         simplex = optimize.minimize(
@@ -391,7 +415,13 @@ def _highest(likelihood: _Likelihood) -> tuple[Floats, float]:
                 proper.append((value, theta))
     if not proper:
         raise NoMaximumError(reasons[0] if reasons else "the likelihood has no maximum")
-    theta, value = likelihood.maximise(max(proper, key=lambda pair: pair[0])[1], lambda free: free)
+    near = len(law.starts) > 2
+    for _, coarse in sorted(proper, key=lambda pair: -pair[0]):
+        theta, value = likelihood.maximise(coarse, lambda free: free, is_near=near, gradient=1e-7)
+        if not (why := _improper(likelihood, theta)):
+            break
+    else:
+        raise NoMaximumError(why)
     if law.names[0] == "share" and theta[4] < 0:  # the first population ends first
         theta = np.array([theta[0] + theta[4], -theta[1], theta[3], theta[2], -theta[4]])
     return theta, value
@@ -402,13 +432,24 @@ def _improper(likelihood: _Likelihood, theta: Floats) -> str:
     law, others = likelihood.law, theta[1:]
     if abs(theta[0]) > 15:
         return "the likelihood has no maximum: it increases as the scale grows"
+    if law.has_threshold and others[0] < -8:
+        return "the likelihood is largest with a threshold of 0: take the law without"
+    if why := _degenerate(likelihood, others):
+        return why
+    curvature = _curvature(likelihood, theta)
+    if not np.isfinite(curvature).all() or np.linalg.eigvalsh(curvature).max() > -1e-6:
+        return "the likelihood has no unique maximum: it is flat along a combination of parameters"
+    return ""
+
+
+def _degenerate(likelihood: _Likelihood, others: Floats) -> str:
+    """Return why the likelihood is unbounded near parameters, or ""."""
+    law = likelihood.law
     if any(others[place] > _STEEPEST for place in law.steep) or (
         law.names == ("median", "sigma") and others[0] < -_STEEPEST
     ):
         return "the likelihood has no maximum: it increases as all lives become equal"
     if law.has_threshold:
-        if others[0] < -8:
-            return "the likelihood is largest with a threshold of 0: take the law without"
         if others[0] > 8 or others[1] <= 0:
             return "the likelihood has no maximum: it increases as the threshold reaches a life"
     if law.names[0] == "share":
@@ -417,13 +458,10 @@ def _improper(likelihood: _Likelihood, theta: Floats) -> str:
             return "the likelihood has no maximum: one population shrinks to a single life"
         if min(others[1], others[2]) < -2 or abs(others[3]) > 7:
             return "the likelihood has no maximum: one population spreads over all times"
-    curvature = _curvature(likelihood, theta)
-    if not np.isfinite(curvature).all() or np.linalg.eigvalsh(curvature).max() > -1e-6:
-        return "the likelihood has no unique maximum: it is flat along a combination of parameters"
     return ""
 
 
-def _curvature(likelihood: _Likelihood, theta: Floats) -> Floats:
+def _curvature(likelihood: Callable[[Floats], float], theta: Floats) -> Floats:
     """Return the matrix of second derivatives by central differences."""
     d, step = len(theta), 1e-3
     moves = np.eye(d) * step
@@ -437,6 +475,16 @@ def _curvature(likelihood: _Likelihood, theta: Floats) -> Floats:
                 4 * step**2
             )
     return matrix
+
+
+def _inverse_information(curvature: Floats) -> Floats | None:
+    """Return the inverse of the negative curvature; None where it is not positive definite."""
+    if not len(curvature) or not np.isfinite(curvature).all():
+        return None
+    if np.linalg.eigvalsh(-curvature).min() <= 1e-8:
+        return None
+    inverse = np.linalg.inv(-curvature)
+    return np.asarray((inverse + inverse.T) / 2)
 
 
 _Constraint = Callable[[float, Floats], Floats]
@@ -497,19 +545,42 @@ def _profile(
     centre = float(link(value))
     free_places = [i for i in range(len(theta)) if i != place]
 
+    def whole(at: float, free: Floats) -> Floats:
+        given = theta.copy()
+        given[free_places] = free
+        with np.errstate(all="ignore"):
+            return build(float(back(at)), given)
+
+    others = list[Floats]()
+    if likelihood.law.has_threshold:  # several maxima: also from the largest, and a threshold of 0
+        others = [theta[free_places]]
+        others += [np.where(np.array(free_places) == 1, -8.0, others[0])] * (place != 1)
+    inverse = _inverse_information(
+        _curvature(lambda free: likelihood(whole(centre, free)), theta[free_places])
+    )
+
     def end(sign: float) -> float:
-        free = theta[free_places]
+        path = [(centre, theta[free_places])]
 
         def root(at: float) -> float:
-            nonlocal free
-
-            def whole(free: Floats) -> Floats:
-                given = theta.copy()
-                given[free_places] = free
-                with np.errstate(all="ignore"):
-                    return build(float(back(at)), given)
-
-            free, reached = likelihood.maximise(free, whole, is_near=True)
+            (before, start), (last, free) = path[-2:] if len(path) > 1 else path * 2
+            if last != before:
+                free = free + (at - last) / (last - before) * (free - start)
+            maxima = [
+                likelihood.maximise(
+                    begin, lambda free: whole(at, free), is_near=True, inverse=inverse
+                )
+                for begin in (free, *others)
+            ]
+            bounded = [
+                (reached, place)
+                for place, (free, reached) in enumerate(maxima)
+                if not _degenerate(likelihood, whole(at, free)[1:])
+            ]
+            if not bounded:
+                return nan
+            reached, place = max(bounded)
+            path.append((at, maxima[place][0]))
             return sqrt(max(2 * (best - reached), 0.0))
 
         inner, outer, at_inner, at_outer = centre, nan, 0.0, nan
@@ -527,9 +598,13 @@ def _profile(
                 outer, at_outer = at, height
         for _ in range(60):
             share = min(max((critical - at_inner) / (at_outer - at_inner), 0.02), 0.98)
+            if isnan(at_outer):  # halve the way to where the likelihood is unbounded
+                share = 0.5
+                if abs(outer - inner) < 1e-3:
+                    return nan
             at = inner + share * (outer - inner)
             height = root(at)
-            if abs(height - critical) < 1e-5 or abs(outer - inner) < 1e-9:
+            if abs(height - critical) < 2e-4 or abs(outer - inner) < 1e-9:
                 break
             if height < critical:
                 inner, at_inner = at, height

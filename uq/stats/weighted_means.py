@@ -79,7 +79,7 @@ def binomial_sizes(
             most = carried.max()
             # Samples with nearly equal contributions count nearly equally.
             heaviest = (of_samples * carried).max() / most if most > 0 else of_samples.max()
-            with np.errstate(over="ignore"):  # for rows of negligible weight
+            with np.errstate(over="ignore", divide="ignore"):  # for rows of negligible weight
                 rows = min(effective_rows(of_samples), float(of_samples.sum() / heaviest))
             hits.append((rows, extent))
     return hits

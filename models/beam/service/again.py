@@ -57,6 +57,7 @@ def again(x: Array, seed: NDArray[np.uint64], settings: Settings, kept: Kept) ->
     for name, shape in shapes.items():
         outputs[name], outputs[f"{name}_error"] = np.full((2, n, *shape), np.nan)
         outputs[f"{name}_censored"] = np.zeros((n, *shape), bool)
+    outputs["first_time_to_depth_cause"] = np.full((n, depths), -1, np.int8)
     for name in ("linear_time_to_depth", "lifetime_ratio", "gap_ratio"):
         outputs[name] = np.full((n, depths), np.nan)
     outputs["regime_changes"] = np.full(n, np.nan)

@@ -92,6 +92,8 @@ def _note(
         none, earliest, outputs["first_time_to_depth"][rows]
     )
     outputs["first_time_to_depth_censored"][rows] = none
+    site = np.where(reached.any(axis=1), first[:, 0], -1)
+    outputs["first_time_to_depth_cause"][rows] = site
     linear = linear_lives(outputs["work_rate"][rows], p, settings)
     outputs["linear_time_to_depth"][rows] = linear
     life = outputs["first_time_to_depth"][rows]

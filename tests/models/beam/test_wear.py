@@ -225,3 +225,15 @@ def test_lives_anywhere_agree_with_incremental_averaging_by_the_exact_propagator
     expected = reference.time[2, 0] * reference.unit
     print(f"\n{life:.6g} s, {life / expected - 1:+.2%}, {allowed / life:.2%}")
     assert life == pytest.approx(expected, abs=2 * allowed + 2e-3 * life)
+
+
+def test_the_cause_of_a_first_life_is_the_site_that_ends_it():
+    x = rows(4)
+    x[1:, Params._fields.index("gap_asymmetry")] = [-0.5, 0.5, 1.0]
+    outputs, _ = compute(x)
+    sites = outputs["time_to_depth"][:, :, 0]
+    cause = outputs["first_time_to_depth_cause"]
+    assert cause.dtype == np.int8 and cause[:, 0].tolist() == sites.argmin(axis=1).tolist()
+    assert len(set(cause[:, 0].tolist())) == 2
+    censored, _ = compute(x, horizon=float(sites.min() / 2))
+    assert (censored["first_time_to_depth_cause"] == -1).all()

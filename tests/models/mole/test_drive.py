@@ -9,7 +9,7 @@ from models.mole import MODEL, exact
 from models.mole.batch import batch
 from models.mole.drive import NODES, Rates, Task, drive
 from models.mole.lanes.rows import CURRENT, SQUARED
-from models.mole.parameters import Params, Settings
+from models.mole.parameters import CAUSES, Params, Settings
 from models.mole.response.machines import Machines
 from models.mole.theory import equations
 from models.mole.theory.system import mole
@@ -279,3 +279,29 @@ def test_what_cannot_be_is_refused_in_a_line():
         assert problem == {"": "distance must be a list of increasing positive numbers"}
     assert "within 0.0 to" in read_settings(MODEL, {"distance": -1.0})[1]["distance"]
     assert "must be a list" in read_settings(MODEL, {"temperature": "hot"})[1]["temperature"]
+
+
+def cold_speed(task, rates):
+    """Return the velocity with a cold coil where a mole is held."""
+    return follow(task, rates)[0].cold_speed
+
+
+def test_a_mole_held_by_heat_would_drive_on_with_a_cold_coil():
+    warm = Task((1.0, 5.0), (), 0.0, 2.0, 4.0)
+    assert cold_speed(warm, lambda z, theta: (0.04 - 0.002 * theta, 0.0, 20.0, 0.0)) == 0.04
+    assert cold_speed(warm, lambda z, theta: (-0.01, 0.0, 20.0, 0.0)) == -0.01
+    assert np.isnan(cold_speed(warm, lambda z, theta: (0.04, 0.0, 20.0, 0.0)))  # it arrives
+    # Ground and coil together hold it where the ground alone would not, or would as well.
+    changing = warm._replace(changing=5.0)
+    assert cold_speed(changing, lambda z, t: (0.04 - 0.004 * z - 0.001 * t, 0.0, 20.0, 0.0)) > 0
+    assert cold_speed(changing, lambda z, t: (0.04 - 0.02 * z - 1e-9 * t, 0.0, 20.0, 0.0)) < 1e-6
+
+
+def test_the_cause_of_a_drive_is_its_distance_or_what_holds_the_mole():
+    o = compute(
+        Settings(distance=(0.1, 10.0)), {"friction_gradient": 1.0}, {}, {"control_frequency": 13.0}
+    )
+    names = [[*CAUSES, "none"][code] for code in o["time_to_distance_cause"].ravel()]
+    assert names == ["distance", "refusal", "distance", "distance", "refusal", "refusal"]
+    cut = compute(Settings(distance=(10.0,), horizon=100.0), {})
+    assert cut["time_to_distance_cause"].tolist() == [[-1]]

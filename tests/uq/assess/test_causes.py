@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from computed import asking, linear, summarised, with_output
 from lifelines import AalenJohansenFitter
 
 import uq
+from uq.assess.targets import category_targets
 from uq.contract import Output, cause_name
 from uq.result.result import Result
+from uq.stats.intervals import binomial_interval
 from uq.stats.survival_curves import aalen_johansen, incidence_interval
 
 
@@ -157,3 +160,39 @@ def test_a_cause_that_ends_no_row_is_rare_also_when_few_rows_are_left():
     low, high = incidence_interval(values, causes, np.zeros(1000), 1, np.array([500.0, 999.0]))
     assert (low == 0).all()
     assert high == pytest.approx(1 - 0.025 ** (1 / 1000), rel=1e-9)
+
+
+def caused(values, codes, censored=None, **analysis):
+    """Return a result whose life has the causes arrival and refusal."""
+    ds = with_output(
+        linear("monte-carlo", samples=len(values)), "life", values, "lifetime", censored
+    )
+    attrs = ds["life"].attrs | {"kind": "category", "units": "1", "may_be_undefined": 1}
+    attrs |= {"flag_values": np.array([-1, 0, 1], np.int8), "flag_meanings": "none arrival refusal"}
+    ds["life_cause"] = ("row", np.array(codes, np.int8), attrs)
+    return asking(ds, outputs=["life"], **analysis)
+
+
+def test_a_cause_that_keeps_lives_from_ending_has_the_share_that_never_ends():
+    values = np.r_[np.arange(1.0, 91.0), np.full(10, np.inf)]
+    ds = caused(values, np.r_[np.zeros(90), np.ones(10)], thresholds={"life": [50.0]})
+    causes = summarised(ds)["outputs"]["life"]["causes"]
+    assert causes["refusal"]["never"]["value"] == 0.1
+    low, high = binomial_interval(0.1, 100)
+    assert causes["refusal"]["never"]["low"] == pytest.approx(low, abs=0.01)
+    assert causes["refusal"]["never"]["high"] == pytest.approx(high, abs=0.01)
+    assert "never" not in causes["arrival"] and causes["arrival"]["50.0"]["value"] == 0.5
+    # Causes of ended lives alone have their incidences, as before.
+    ds = caused(values, np.r_[np.zeros(90), np.full(10, -1)], thresholds={"life": [50.0]})
+    assert summarised(ds)["outputs"]["life"]["causes"]["refusal"]["50.0"]["value"] == 0.0
+
+
+def test_what_decides_the_cause_is_an_index_unless_a_row_is_censored():
+    ds = caused(np.arange(1.0, 201.0), np.zeros(200))
+    ds["life_cause"].values[ds["x4"].values > 0.5] = 1
+    arrays = uq.sensitivity(asking(ds, outputs=["life_cause"]), "first-order")
+    decided = arrays["S1"].sel(output="P(life_cause=refusal)")
+    assert decided.sel(parameter="x4") > 0.8 > 0.2 > decided.sel(parameter="x1")
+    cut = caused(np.arange(1.0, 201.0), np.zeros(200), np.arange(200) == 7)
+    (target,) = category_targets(Result(cut), "life_cause")
+    assert "1 row is censored, and what would end it" in target.refused

@@ -23,7 +23,7 @@ def lives(values, censored=None, method="monte-carlo", **analysis):
 
 
 def fitted(ds, law):
-    return uq.life_fits(ds, "life").loc[("life", law)]
+    return uq.life_fits(ds, "life", [law]).loc[("life", law)]
 
 
 def sample(law, n=400, seed=1):
@@ -65,7 +65,7 @@ def test_distance_is_that_of_anderson_and_darling():
     [(WEIBULL, "weibull", "lognormal"), (LOGNORMAL, "lognormal", "weibull")],
 )
 def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
-    fits = uq.life_fits(lives(sample(law)), "life").loc["life"]
+    fits = uq.life_fits(lives(sample(law)), "life", [right, wrong]).loc["life"]
     good, bad = fits.loc[right], fits.loc[wrong]
     assert good["p_value"] > 0.05 > bad["p_value"]
     assert "rejected" in bad["refused"] and bad[["B10", "shape", "median"]].isna().all()
@@ -77,7 +77,7 @@ def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
 
 
 def test_fits_are_a_table_and_in_json():
-    life = lives(sample(LOGNORMAL))
+    life = lives(sample(LOGNORMAL, 100))
     table = uq.life_fits(life, "life")
     entries = summary_facts(summarise(Result(life), fits=True)).json["outputs"]["life"]["fits"]
     laws = ["weibull", "lognormal", "gamma", "exponential", "weibull-3", "weibull-mixture"]
@@ -122,6 +122,8 @@ def test_what_cannot_be_fitted_is_refused():
     assert fits["refused"].str.contains("independent rows").all()
     with pytest.raises(InputError, match="not a lifetime"):
         uq.life_fits(linear(), "y")
+    with pytest.raises(InputError, match="no such law 'weibul'; did you mean 'weibull'?"):
+        uq.life_fits(lives(good), "life", ["weibul"])
 
 
 def test_b_lives_are_plain_quantiles_while_censoring_does_not_matter():

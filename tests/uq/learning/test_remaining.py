@@ -45,8 +45,7 @@ def test_a_life_counts_from_when_its_own_unit_was_last_seen():
         ANY: 9e5,
         "A": 5e5,
         "B": 8e5,
-        "D": 0.0,
-    }  # what has ended has no life left
+    }  # what has ended, or is measured as a life, has no life left
     assert list(lives["A", "life"].by) == [1e6]  # the threshold of the study
 
 

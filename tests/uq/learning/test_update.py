@@ -132,9 +132,14 @@ def test_many_units_take_little_room_on_disk(tmp_path):
     assert open_result(tmp_path / "posterior.nc").identical(made)
 
 
-def test_more_units_than_a_sample_has_are_refused(result):
+def test_more_units_than_a_sample_has_are_refused_where_samples_are_worlds(result):
     with pytest.raises(InputError, match=r"2 units are inspected, .* has 1: set \[design\] units"):
-        update(result, measured(5e5, 6e5))
+        update(wear(100, rate="shared"), measured(5e5, 6e5))
+    # Without shared inputs any row represents any unit.
+    inputs = inputs_of(update(result, measured(5e5, 6e5)))
+    mean, cov = exactly([5e5, 6e5])
+    for i, name in enumerate(["rate[unit=A]", "rate[unit=B]"]):
+        assert_close(inputs[name]["posterior"], mean[i], cov[i, i] ** 0.5)
 
 
 def test_what_contradicts_the_rows_is_refused(result, tmp_path):

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from scipy import stats
 
 import uq
 from uq.assess.comparison import comparison
@@ -231,3 +232,34 @@ def test_zero_lives_are_lives(folder):
     assert float(uq.summary(ds).loc["life", "q0.5"]) == pytest.approx(13, abs=1.5)
     share = 1 - float(uq.survival(ds, "life")["survival"].sel(time=0.0))
     assert share == pytest.approx(0.1)
+
+
+EXCLUDED = "which this law excludes"
+
+
+def test_many_zero_lives_have_their_share_and_ranks(folder):
+    rng = np.random.default_rng(5)
+    x = rng.normal(size=200)
+    life = np.where(x > 0.6, 0.0, rng.weibull(2, 200) * np.exp(-0.3 * x))
+    lines = "".join(f"{a!r},{b!r}\n" for a, b in zip(life.tolist(), x.tolist(), strict=True))
+    ds = uq.import_lives(csv(folder, "life [h],x\n" + lines), "life")
+    zeros = int((life == 0).sum())
+    table = uq.summary(ds).loc["life"]
+    assert table["ended_at_once"] == zeros / 200
+    assert table["ended_at_once_low"] < stats.norm.sf(0.6) < table["ended_at_once_high"]
+    refused = uq.life_fits(ds, "life")["refused"].loc["life"]
+    assert (refused.drop("exponential") == f"{zeros} rows have no positive life, {EXCLUDED}").all()
+    assert refused["exponential"] == ""
+    indices = uq.sensitivity(ds, "first-order")["S1"]
+    assert indices["output"].values.tolist()[0] == "rank(life)"
+    assert float(indices.sel(output="rank(life)", parameter="x")) > 0.5
+
+
+def test_a_life_that_ended_before_a_first_inspection_is_no_zero_life(folder):
+    lines = "0,5\n" * 10 + "5,10\n" * 20
+    ds = uq.import_lives(
+        csv(folder, "low,high\n" + lines), "life", unit="h", low="low", high="high"
+    )
+    assert "ended_at_once" not in uq.summary(ds)
+    fits = uq.life_fits(ds, "life", ["exponential", "weibull"])
+    assert (fits["refused"] == "").all()

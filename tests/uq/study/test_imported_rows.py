@@ -165,7 +165,7 @@ def test_a_life_of_independent_imported_rows_has_a_curve_and_fits(table):
     values = np.random.default_rng(0).weibull(2.0, 100)
     ds = with_output(ds, "life", values, "lifetime")
     assert survival(ds, "life")["low"].notnull().any()
-    assert uq.life_fits(ds, "life").loc[("life", "weibull"), "B10"] > 0
+    assert uq.life_fits(ds, "life", ["weibull"]).loc[("life", "weibull"), "B10"] > 0
 
 
 def test_without_the_statement_the_remedy_is_named(table):

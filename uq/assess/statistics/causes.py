@@ -15,6 +15,8 @@ from uq.contract import Floats
 from uq.result.element import Element
 from uq.stats.estimate import Estimate
 from uq.stats.survival_curves import aalen_johansen, incidence_interval
+from uq.text.numbers import number, threshold
+from uq.text.units import beside, typical, unit_of
 
 _KIND = StatisticKind(
     name="Incidences by cause", is_share=True, readers=~(Reader.RUNNING | Reader.REPORT)
@@ -26,18 +28,36 @@ _WEIGHTED = "cumulative incidence needs rows of equal weight"
 @placed()
 @bounded()
 def causes(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield the cumulative incidence of each cause at thresholds and quantiles, and B-lives."""
+    """Yield the cumulative incidence of each cause at thresholds and quantiles, and B-lives.
+
+    Of a cause that ended no row where causes tell why a life never ends: the share that never ends.
+    """
     if not element.declared.causes or element.causes is None:
         return
+    of_never = element.causes[element.never]
     sample = context.sample(element)
     asked = list(context.analysis.thresholds.get(element.output, ()))
     times = [sample.life_quantile(p).value for p in dict.fromkeys(context.analysis.quantiles)]
-    every = dict.fromkeys([*asked, *sorted(time for time in times if isfinite(time))])
+    unit = unit_of(element.units, typical(times))
+    quantiles = sorted(time for time in times if isfinite(time))
+    labels = {time: beside(number(time / unit.size), unit.name) for time in quantiles}
+    labels |= {time: threshold(time, element.units) for time in asked}
+    every = dict.fromkeys([*asked, *quantiles])
     for code, cause in enumerate(element.declared.causes):
+        if (of_never >= 0).any() and not (element.causes[~element.never] == code).any():
+            yield Statistic(
+                ("causes", cause, "never"),
+                f"never, by {cause}",
+                _held(element, context, code),
+                kind=_KIND,
+                column=f"never by {cause}",
+                by=(share_of,),
+            )
+            continue
         for time in every:
             yield Statistic(
                 ("causes", cause, repr(time)),
-                f"by {cause} within {time:g} {element.units}",
+                f"by {cause} within {labels[time]}",
                 incidence(element, context, code, time),
                 kind=_KIND,
                 column=f"{cause} by {time!r}",
@@ -56,6 +76,17 @@ def causes(element: Element, context: Context) -> Iterator[Statistic]:
                 column=f"{name} by {cause}",
                 by=(aalen_johansen, incidence_interval),
             )
+
+
+def _held(element: Element, context: Context, code: int) -> Estimate:
+    """Estimate the share of rows that never end by a cause."""
+    if why := refusal(element, context):
+        return Estimate(reason=why)
+    if element.censored.any() and not element.declared.never_known_at_once:
+        return Estimate(reason="rows that are censored may never end")
+    kept = element.present
+    hits = (element.never & (element.causes == code))[kept]
+    return share_of(hits, context.sample(element).dependence[kept])
 
 
 def _hits(code: int, time: float) -> Callable[[Element], SelectedRows | None]:

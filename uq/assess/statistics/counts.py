@@ -20,6 +20,9 @@ from uq.text.numbers import counted, percent
 NEVER_ENDING = "never_ending"
 """Key of the probability that a life never ends."""
 
+ENDED_AT_ONCE = "ended_at_once"
+"""Key of the probability that a life is zero."""
+
 _NEVER = StatisticKind(readers=Reader.JSON | Reader.COLUMNS | Reader.COMPARED)
 _EFFECTIVE = StatisticKind(form="number", text="{:.0f}", readers=COUNT.readers)
 
@@ -42,6 +45,21 @@ def counts(element: Element, context: Context) -> Iterator[Statistic]:
             estimator=share(_never),
             by=sample.by[NEVER_ENDING],
         )
+
+
+def ended_at_once(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield the probability that a life is zero, if any is; P(T < 0) does not count it."""
+    if not element.is_lifetime or not ((element.values == 0) & ~element.censored).any():
+        return
+    sample = context.sample(element)
+    longer = sample.probability_above(0.0)
+    yield Statistic(
+        (ENDED_AT_ONCE,),
+        "succeeds at once" if element.declared.success else "ends at once",
+        replace(longer, value=1 - longer.value, low=1 - longer.high, high=1 - longer.low),
+        column=ENDED_AT_ONCE,
+        by=sample.by["probability_above"],
+    )
 
 
 def _never(element: Element) -> SelectedRows | None:

@@ -2,7 +2,7 @@
 
 from uq.assess.statistic import Maker
 from uq.assess.statistics.causes import causes
-from uq.assess.statistics.counts import accuracy, counts, effective
+from uq.assess.statistics.counts import accuracy, counts, effective, ended_at_once
 from uq.assess.statistics.moments import between_regimes, moments_of
 from uq.assess.statistics.quantiles import b_lives, integrated, quantiles, thresholds
 from uq.assess.statistics.tolerance import joint, tolerance
@@ -14,6 +14,7 @@ STATISTICS: dict[str, Maker] = {
     "tolerance": tolerance,
     "joint_bounds": joint,
     "thresholds": thresholds,
+    "ended_at_once": ended_at_once,
     "causes": causes,
     "between_regimes": between_regimes,
     "counts": counts,

@@ -517,7 +517,10 @@ def update(
         ),
     ],
     inspections: Annotated[
-        Path, typer.Argument(metavar="INSPECTIONS.csv", help="What was measured.")
+        Path,
+        typer.Argument(
+            metavar="INSPECTIONS.csv|LIVES.nc", help="What was measured, or imported lives."
+        ),
     ],
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="POSTERIOR.nc", help="Where to write it.")
@@ -530,6 +533,9 @@ def update(
         typer.Option(min=0.0, metavar="CV", help="Model error: scatter of reality about it."),
     ] = None,
     by: given.Times = None,
+    life: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Lifetime that imported lives are of.")
+    ] = None,
     workers: given.Workers = None,
     scheduler: given.Scheduler = None,
     model: given.ModelReference = None,
@@ -547,6 +553,7 @@ def update(
         rows,
         model_error,
         by or [],
+        life,
         model,
         options,
         quiet or json,

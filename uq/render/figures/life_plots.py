@@ -63,13 +63,16 @@ def incidence(result: AnyResult, output: str, *, axes: Axes | None = None) -> Fi
     if why := refusal(element, Context(rows, result.analysis)):
         raise InputError(f"'{output}': {why}")
     values, codes, entered = at_risk(element)
-    time = np.unique(values[codes >= 0])
+    ended = (codes >= 0) & np.isfinite(values)
+    time = np.unique(values[ended])
     time = np.append(0.0, time[thinned(len(time))])
     unit = display_unit(element.units, time)
     (panel,) = column(axes, 2.3)
     base = np.zeros(len(time))
     style: Any = {"step": "post", "lw": 0}
     for code, cause in enumerate(element.declared.causes):
+        if not (codes[ended] == code).any():
+            continue
         share = aalen_johansen(values, codes, entered, code, time).share
         low, high = incidence_interval(values, codes, entered, code, time)
         colour = COLOURS[code % len(COLOURS)]
