@@ -184,7 +184,7 @@ def _words(result: Result, path: keys.Path) -> str:
 
 
 def _unit(result: Result, path: keys.Path) -> str:
-    """Return the CF unit of the values at a path, % of probabilities, "" of other numbers."""
+    """Return the CF unit of values at a path, % of probabilities and shares, "" of others."""
     target = _target(result, path)
     if path[1:2] in (("stated",), ("sampled",)):
         return str(result.dataset[path[0]].attrs["units"])
@@ -192,6 +192,8 @@ def _unit(result: Result, path: keys.Path) -> str:
         return "%"
     if target is None or not path[2:]:
         return ""
+    if path[2] in (*LEVELS, SOLVER):
+        return "%"
     if path[2] == "estimates":
         return "%" if path[3].startswith("P(") else target.units
     return target.units if path[2] in _IN_UNIT or path[2:4] == ("earliest", "lives") else ""

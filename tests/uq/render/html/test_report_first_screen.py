@@ -1,7 +1,7 @@
 """The first screen of a report has room for what to do, however tall its figure is."""
 
 import numpy as np
-from computed import asking, kinds
+from computed import asking, kinds, linear
 
 from uq.render.html.page import page
 from uq.result.result import Result
@@ -18,3 +18,13 @@ def test_a_tall_figure_leaves_room_for_what_to_do(browser, tmp_path):
     browser.open(path, width=1400, height=900)
     height = "document.querySelector('.first-screen figure svg').getBoundingClientRect().height"
     assert browser.value(height) <= 384
+
+
+def test_the_page_says_why_there_is_no_bound_and_why_there_are_more_rows():
+    crossed = linear("saltelli", samples=64, replicates=4, analysis={"outputs": ["y"]})
+    shown = page(Result(crossed), "crossed.nc")
+    assert "<li>No 95/95 bound: " in shown
+    assert "512 runs in 1 536 rows" in shown.replace("\xa0", " ")
+    event = linear("saltelli", samples=64, replicates=4, analysis={"thresholds": {"y": 5.0}})
+    shown = page(Result(event), "crossed.nc").replace("\xa0", " ")
+    assert "1 536 rows: 512 runs, copies with other values of some inputs" in shown

@@ -307,6 +307,7 @@ def test_a_trace_says_who_estimates_and_who_made_the_rows(uq, write_study):
         ("answer/quantities/life/range/never", "range never of life", r"value +\S+ *\n"),
         ("inputs/rate/stated", "inputs/rate/stated", r"0.5 +\S+ m s⁻¹ +\S+ pm s⁻¹"),
         ("samples", "samples", r"value +64 *\n"),
+        ("levels/outputs/log(life)/own", "own of log(life)", r"value +\S+ +\S+ %"),
     ],
 )
 def test_a_trace_shows_words_and_units(uq, write_study, key, words, number):
