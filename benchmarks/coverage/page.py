@@ -30,8 +30,8 @@ Problems: *Ishigami's function*; a *function of two regimes* that jumps by 3 whe
 1.2, added to x1 + x3; a *life with a heavy tail*, whose P(T > t) falls as t^-3, so that it has a
 variance but no skewness; the same life *never ending* in some rows, *censored* at a horizon or at
 random times; lives of which 60 % *never end*, known at once, while the others, Weibull, may be
-censored; Weibull and lognormal lives; lives *recorded* in the field, from six laws or ended by one of
-two causes; the *g-function*; a *linear function* and a *lognormal* one in two studies;
+censored; Weibull and lognormal lives; lives *recorded* in the field, of six laws or two causes; the
+*g-function*; a *linear function* and a *lognormal* one in two studies;
 *Pareto* values without variance or mean; gamma lives and lives with infant mortality, to which
 wrong laws are fitted; *dependent inputs*: x1 + x2 + 2 x3 of normal or exponential inputs, with x2
 and x3, and x1 and an unused x4, correlated, e to the power of a sixth (*mild*) or half (*steep*) of

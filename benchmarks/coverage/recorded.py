@@ -21,9 +21,13 @@ _OWN = (
     "the likelihood ratio has a smaller limit than chi-squared where each row has times of its own"
     " (Banerjee and Wellner 2001)"
 )
+_THRESHOLD = (
+    "the likelihood is irregular in the threshold; a sample where it is largest at 0 has no fit"
+)
 REASONS = {
     "common": {"B": "between visits the data leave the quantile open: its interval ends at visits"},
     "own": {"P": _OWN, "B": _OWN},
+    "weibull-3": dict.fromkeys(("shape", "threshold", "B"), _THRESHOLD),
 }
 KINDS = {
     "censored": "some censored",
@@ -169,9 +173,7 @@ FITS = (
 def fits(name, kind, rows, repetitions):
     """Count the profile-likelihood intervals of a law, where its likelihood has a maximum."""
     law, parameters = LAWS[name]
-    tally = Tally(
-        f"Recorded {name} life, {KINDS[kind]}, {rows} rows", REASONS.get(f"{name}, {kind}")
-    )
+    tally = Tally(f"Recorded {name} life, {KINDS[kind]}, {rows} rows", REASONS.get(name))
     for seed in range(repetitions):
         seen = observed(law, kind, rows, np.random.default_rng(seed))
         try:
