@@ -22,7 +22,7 @@ from uq.text.units import beside
 
 WIDTH = 80
 SHORT = 14
-"""A card with no more lines has no blank ones and no headers of columns."""
+"""A card with no more lines has no blank ones, no headers of columns, and no range of 90 %."""
 
 _HEADERS = {
     "ST": ("total share", ""),
@@ -129,7 +129,8 @@ def lines_of(card: Card) -> list[Line]:
 
 
 def _lines_of(card: Card) -> list[Line]:
-    blocks = _blocks(card, is_short=True)
+    numbers = tuple(line for line in card.headline if not line.is_range)
+    blocks = _blocks(replace(card, headline=numbers), is_short=True)
     short = _with_commands([line for block in blocks for line in block])
     if len(short) <= SHORT:
         return short
