@@ -226,8 +226,8 @@ class Settings:
     run_down_phases: Annotated[
         tuple[float, ...],
         Setting(
-            "phases of vibrator 1, from the working axis, at which synchronous motors are switched"
-            " off; the run-down is then reported",
+            "phases of vibrator 1, from the working axis at its mean speed, at which synchronous"
+            " motors are switched off; the run-down is then reported",
             "rad",
             bounds=(0.0, 2 * pi),
             optional=True,

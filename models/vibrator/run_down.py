@@ -2,9 +2,10 @@
 
 Without motor torque the vibrators are braked by their bearings, rho m e w^2, and by the body, whose
 dampers take energy. As friction falls with the square of the speed, they never stop entirely: at
-rest is a machine both of whose vibrators turn slower than 0.05 of their synchronous speed, with
-gravity also when their unbalances swing through the lowest point. The excursion depends on where
-the unbalances are at the resonance, so on the phase at which the motors are switched off.
+rest is a machine once both vibrators turn slower than 0.05 of their synchronous speed, with gravity
+also when their unbalances swing through the lowest point. Its motion counts until then. The
+excursion depends on where the unbalances are at the resonance, so on the phase at which the motors
+are switched off.
 """
 
 import math
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from models.numerics import elementary
 from models.numerics.dop853 import REACHED_END
 from models.vibrator.equations.rigid import Rigid
-from models.vibrator.exact.budgeted import prepare
+from models.vibrator.exact.budgeted import Machine, prepare
 from models.vibrator.exact.measures import excursion
 from models.vibrator.exact.orbit import find_orbit, proposal
 from models.vibrator.lanes.fixed_steps import advance
@@ -33,6 +34,9 @@ STEPS = 12  # per turn, of order 8
 _LOOK = 96  # steps
 _SHIFT = 96  # steps of a turn, to the phase at which motors are switched off
 _PER_TURN, _TURNS = 32, 16  # samples of the exact propagator, turns of a look
+_NEAR = 2.0  # times the speed at rest, below which every step is looked at
+_HALVINGS = 30  # of a step
+_WHOLE = 1 - 1e-12
 
 
 def run_downs(
@@ -121,26 +125,51 @@ def _run_down(machines: Machines, state: Array, longest: float) -> tuple[Array, 
     """Return the largest displacement of C [m] and the time to rest [s]; `state` is updated."""
     machines, n = _switched_off(machines), len(state)
     far, time = np.zeros(n), np.full(n, longest)
-    slow = STALLED_BELOW * machines.synchronous_speed
-    rows, now = np.arange(n), np.zeros(n)
-    while len(rows):
-        part, here = machines.take(rows), state[rows]
-        before = _lowest_speeds(part.rigid, here)
-        h = np.minimum(2 * np.pi / (STEPS * before.max(axis=1)), STABLE / part.fastest)
-        notes = advance(part, here, h, np.full(len(rows), np.nan), _LOOK, 0.0, True)
-        state[rows] = here
-        far[rows] = np.maximum(far[rows], notes[:, EXCURSION])
-        after, limit = _lowest_speeds(part.rigid, here), slow[rows]
-        # By friction alone the reciprocal of the speed grows at a constant rate.
-        part_of_look = (1 / limit - 1 / before) / (1 / after - 1 / before)
-        part_of_look = np.where(before > limit, part_of_look, 0.0).max(axis=1)
-        rest = (after <= limit).all(axis=1)
-        time[rows[rest]] = (now + _LOOK * h * part_of_look)[rest]
-        now = now + _LOOK * h
-        going = ~rest & (now < longest) & np.isfinite(here).all(axis=1)
-        rows, now = rows[going], now[going]
+    limit = STALLED_BELOW * machines.synchronous_speed
+    now, left = np.zeros(n), np.arange(n)
+    for steps, above in ((_LOOK, _NEAR), (1, 1.0)):
+        rows, left = left, left[:0]
+        while len(rows):
+            part, here = machines.take(rows), state[rows]
+            fastest = _lowest_speeds(part.rigid, here).max(axis=1)
+            h = np.minimum(2 * np.pi / (STEPS * fastest), STABLE / part.fastest)
+            h = np.minimum(h, (longest - now[rows]) / steps)
+            notes = _advance(part, here, h, steps)
+            ends = (_lowest_speeds(part.rigid, here) <= above * limit[rows]).all(axis=1)
+            on, at = rows[~ends], rows[ends]
+            if steps > 1:  # the end is near, and sought step by step
+                left = np.concatenate([left, at])
+            elif len(at):
+                span, at_end = _crossing(part.take(ends), state[at], h[ends], limit[at])
+                far[at] = np.maximum(far[at], at_end)
+                time[at] = now[at] + span
+            state[on], far[on] = here[~ends], np.maximum(far[on], notes[~ends])
+            now[on] += steps * h[~ends]
+            is_over = now[on] >= longest * _WHOLE
+            rows = on[~is_over & np.isfinite(state[on]).all(axis=1)]
     finite = np.isfinite(state).all(axis=1)
     return np.where(finite, np.sqrt(far), np.nan), np.where(finite, time, np.nan)
+
+
+def _advance(machines: Machines, state: Array, h: Array, steps: int) -> Array:
+    """Advance states by some steps; return the largest squares of the displacement of C [m2]."""
+    nowhere = np.full(len(state), np.nan)
+    return np.asarray(advance(machines, state, h, nowhere, steps, 0.0, True)[:, EXCURSION])
+
+
+def _crossing(machines: Machines, state: Array, h: Array, limit: Array) -> tuple[Array, Array]:
+    """Return the time within a step at which machines come to rest, and the square as `_advance`.
+
+    The step is halved: one of any length has the order of the method.
+    """
+    low, high = np.zeros(len(h)), np.ones(len(h))
+    far = np.zeros(len(h))
+    for _ in range(_HALVINGS):
+        middle, here = 0.5 * (low + high), state.copy()
+        far = _advance(machines, here, middle * h, 1)
+        rests = (_lowest_speeds(machines.rigid, here) <= limit).all(axis=1)
+        low, high = np.where(rests, low, middle), np.where(rests, middle, high)
+    return high * h, far
 
 
 def _run_down_exactly(params: Params, phases: Array, settings: Settings) -> Any:
@@ -153,7 +182,6 @@ def _run_down_exactly(params: Params, phases: Array, settings: Settings) -> Any:
         return far, time
     rigid = machine.system.rigid
     slow = STALLED_BELOW * np.array([rigid.synchronous_speed_1, rigid.synchronous_speed_2])
-    times = np.arange(1, _PER_TURN * _TURNS + 1)
     for k, phase in enumerate(phases.tolist()):
         off = prepare(params, settings.kinematics, BUDGET)
         state, largest, now = orbit.state.copy(), 0.0, 0.0
@@ -163,17 +191,36 @@ def _run_down_exactly(params: Params, phases: Array, settings: Settings) -> Any:
             first = state.copy()
             fastest = max(*_lowest_speeds(rigid, first[None])[0], *slow)
             interval = 2 * np.pi / (_PER_TURN * float(fastest))
-            look = interval * times
+            count = min(_PER_TURN * _TURNS, math.ceil((settings.run_down - now) / interval))
+            look = interval * np.arange(1, count + 1)
             ended, samples = off.run(state, float(look[-1]), settings.tolerance, math.inf, look)
             if ended.status != REACHED_END or not np.isfinite(samples).all():
                 largest = now = math.nan
                 break
-            largest = max(largest, excursion(np.vstack([first, samples]), interval))
-            moving = np.flatnonzero((_lowest_speeds(rigid, samples) > slow).any(axis=1))
-            last = int(moving[-1]) + 1 if len(moving) else 0
-            if last < len(times):
-                now += last * interval
+            rests = np.flatnonzero((_lowest_speeds(rigid, samples) <= slow).all(axis=1))
+            moving = int(rests[0]) if len(rests) else count
+            path = np.vstack([first, samples[:moving]])
+            if moving:
+                largest = max(largest, excursion(path, interval))
+            now += moving * interval
+            if moving < count:
+                span, at = _crossing_exactly(off, path[-1], interval, slow, settings.tolerance)
+                largest, now = max(largest, math.hypot(at[0], at[1])), now + span
                 break
-            now += float(look[-1])
         far[k], time[k] = largest, now
     return far, time
+
+
+def _crossing_exactly(
+    off: Machine, state: Array, interval: float, slow: Array, tolerance: float
+) -> tuple[float, Array]:
+    """Return the time within an interval at which a machine comes to rest, and its state then."""
+    low, high, at = 0.0, 1.0, state
+    for _ in range(_HALVINGS):
+        middle, here = 0.5 * (low + high), state.copy()
+        off.run(here, middle * interval, tolerance)
+        if (_lowest_speeds(off.system.rigid, here[None])[0] <= slow).all():
+            high, at = middle, here
+        else:
+            low = middle
+    return high * interval, at
