@@ -89,6 +89,17 @@ def of_lifelines(lives, times):
     return share.min(axis=1), share.max(axis=1)
 
 
+def log_likelihood(other, lives):
+    """Return the log-likelihood of lives between visits, of an estimate of SurPyval."""
+
+    def survival(time):
+        later = np.asarray(other.sf(np.where(np.isinf(time), 0.0, time)))
+        return np.where(np.isinf(time), 0.0, later)
+
+    within = survival(lives.low) - survival(lives.high)
+    return float(np.log(within / survival(lives.entered)).sum())
+
+
 @pytest.mark.parametrize("seeds", SEEDS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_distributions(kind, seeds):
@@ -96,11 +107,16 @@ def test_distributions(kind, seeds):
     for seed in seeds:
         lives = drawn(kind, seed)
         times = apart(lives)
-        least, most = turnbull(lives).ended_by(times)
+        estimate = turnbull(lives)
+        least, most = estimate.ended_by(times)
         other = surpyval.Turnbull.fit(**as_xl(lives), turnbull_estimator="Kaplan-Meier")
         share = 1 - np.asarray(other.sf(times))
-        off["surpyval"].append(np.maximum(least - share, share - most).max())
-        if kind != "visits late":  # which lifelines does not have
+        difference = np.maximum(least - share, share - most).max()
+        # Of late entry between visits seven in 200 differ more: theirs has a smaller likelihood.
+        if difference < 1e-3 or estimate.log_likelihood < log_likelihood(other, lives):
+            off["surpyval"].append(difference)
+        # Lifelines has no late entry between visits, and takes long for visits.
+        if "visits" not in kind or (seed < 20 and kind != "visits late"):
             low, high = of_lifelines(lives, times)
             off["lifelines"].append(max(np.abs(low - least).max(), np.abs(high - most).max()))
     for name, differences in off.items():
