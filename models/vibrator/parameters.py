@@ -337,7 +337,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "run_down_excursion": Output(
         "m",
-        "largest displacement of C after the motors are switched off at the phase",
+        "largest displacement of C from switching off at the phase until the machine has run down",
         dims=("run_down_phase",),
         may_be_undefined=True,
     ),
