@@ -99,7 +99,9 @@ def headlines(findings: Findings, answer: Answer) -> Iterator[Headline]:
 
 def _of_event(quantity: Quantity, event: Event) -> Headline:
     key = key_of("quantities", quantity.name, "events", event.name, "share", verb="answer")
-    label = event.predicate.removesuffix(" in magnitude").replace("exceed", "beyond")
+    label = event.predicate.replace("exceed", "beyond")
+    if label.endswith(" in magnitude"):
+        label = label.removesuffix(" in magnitude").replace("beyond ", "beyond ±")
     share = with_failed(event.share, event.failed)
     return Headline(key, label, share, "1", None, leads=not quantity.is_life)
 
@@ -170,7 +172,7 @@ def _with_errors(quantity: Quantity, line: Headline, side: str) -> Iterator[Head
     now = line.shown.text(line.estimate.value, line.towards)
     if moved is None or line.shown.text(moved, line.towards) == now:
         return
-    by = "less" if side == "lower" else "plus"
+    by = "minus" if side == "lower" else "plus"
     yield replace(
         line,
         key=key_of("quantities", quantity.name, "own_error", side, verb="answer"),
@@ -187,7 +189,7 @@ def _undecided(findings: Findings, quantity: Quantity) -> str:
     censored = None if described is None else described.find("censored")
     if censored is None or not len(findings.rows):
         return ""
-    return f"{percent(censored.estimate.value / len(findings.rows))} undecided"
+    return f"{percent(censored.estimate.value / len(findings.rows))} undecided, included"
 
 
 def _failed_of_median(findings: Findings, quantity: Quantity) -> Estimate | None:
@@ -217,6 +219,8 @@ def _of_range(findings: Findings, quantity: Quantity) -> Iterator[Headline]:
 
     if isfinite(likely.median.value):
         label = "median magnitude" if likely.of_magnitude else "median"
+        if findings.result.outputs[quantity.output].success:
+            label = "50 % succeed by"
         middle = with_failed(likely.median, _failed_of_median(findings, quantity))
         yield Headline(key("median"), label, middle, unit, shown)
     for life in quantity.b_lives:

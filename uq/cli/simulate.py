@@ -153,12 +153,13 @@ def show_outputs(row: Row) -> None:
     for name, output in row.model.outputs.items():
         states = list(_states(row, name))
         category = _plain(row.model, name, row.columns[name][0]) if output.is_category else None
-        is_empty = not category and all(np.isnan(value) and not state for _, value, state in states)
+        is_empty = not np.any(category) and all(np.isnan(value) and not state for _, value, state in states)
         if not output.shown or (row.failed and is_empty):
             continue
         if output.is_category:
             heading(f"\n{name}", readable(output.meaning))
-            grid([("", category or "none")])
+            names = np.ravel(np.array(category, object))
+            grid([("", ", ".join(name or "none" for name in names))])
             continue
         unit = unit_of(output.unit, typical(value for _, value, _ in states))
         heading(f"\n{name}{in_brackets(unit)}", readable(output.meaning))

@@ -270,7 +270,7 @@ def number_of(line: Headline) -> str:
         return printed(percent(estimate.value))
     unit = _brief(line.shown)
     if line.label.endswith(f"life{WITH_ERRORS}") and estimate.value <= 0:
-        return "none"  # the errors are as large as the values
+        return "none left"  # the errors are as large as the values
     if isnan(estimate.value):
         return printed(unit.between(estimate.low, estimate.high))
     return printed(unit.text(estimate.value, line.towards))
@@ -310,6 +310,8 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
     filled = [i for i, column in enumerate(zip(*rows, strict=True)) if any(column)]
     header = [header[i] for i in filled]
     rows = [[row[i] for i in filled] for row in rows]
+    if not is_short:
+        header[0] = (header[0][0], "of scatter")
     widths = _widths_of(header, rows)
     room = WIDTH - 2 - 2 * (len(widths) - 1)
     if sum(widths) > room and header[-1][1].endswith(_IN_BRACKETS):
@@ -318,9 +320,9 @@ def _causes(card: Card, *, is_short: bool, is_cut: bool) -> Iterator[Line]:
         widths = _widths_of(header, rows)
     if is_short:
         for i in range(len(header) - 1, -1, -1):
-            wide = len(" ".join(header[i]))
-            if sum(widths) - widths[i] + max(wide, widths[i]) <= room:
-                header[i], widths[i] = (" ".join(header[i]), ""), max(wide, widths[i])
+            whole = " ".join(header[i]).rstrip()
+            if sum(widths) - widths[i] + max(len(whole), widths[i]) <= room:
+                header[i], widths[i] = (whole, ""), max(len(whole), widths[i])
         if not (header[0][1] or header[-1][1]):
             header = [(upper, "") for upper, _ in header]
     for place, least in ((2, 22), (0, 16), (2, 12)):
@@ -357,7 +359,7 @@ def cause_columns(card: Card) -> tuple[list[tuple[str, str]], list[list[str]]]:
     header = [
         ("CAUSES", ""),
         (upper, f"of {card.share_of}" if card.share_of else lower),
-        (f"{step} more", "changes it") if step else ("scatter halved", "(now)"),
+        (f"{step} up", "changes it") if step else ("scatter halved", "(now)"),
         ("", ""),
     ]
     tolerances = [cause.tightened for cause in card.causes if cause.tightened is not None]

@@ -150,11 +150,7 @@ def _type_in_words(model: Model, name: str, kind: Any) -> str:
     if declared.bounds is not None:
         low, high = declared.bounds
         words += f" within {low!r} to {high!r}"
-    if declared.unit != "1":
-        words += f" [{declared.unit}]"
-    if kind == tuple[tuple[float, float], ...]:
-        words += '; or {file = "NAME.csv", columns = ["A", "B"]}'
-    return words
+    return words if declared.unit == "1" else f"{words} [{declared.unit}]"
 
 
 def _kind_in_words(kind: Any) -> str:

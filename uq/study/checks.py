@@ -44,8 +44,11 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     given, analysis = tables["settings"], tables["analysis"]
     settings, problems = read_settings(model, given)
     for name, text in problems.items():
+        value = given.get(name)
+        if isinstance(value, dict) or str(value).endswith(".csv"):
+            text += '; or {file = "NAME.csv", columns = ["A", "B"]}'
         yield (
-            InputFault(("settings", name), text, given[name])
+            InputFault(("settings", name), text, value)
             if name
             else InputFault(("settings",), text)
         )

@@ -154,7 +154,7 @@ def percent(share: float) -> str:
     return f"{100 * share:.{-floor(log10(100 * rest)) if 0 < rest < 0.001 else 1}f} %"
 
 
-TO_THESE_DIGITS = "exact to these digits"
+TO_THESE_DIGITS = "within these digits"
 
 
 def percent_interval(low: float, high: float) -> str:

@@ -91,7 +91,7 @@ def tolerance_bound_of(
     if any(sides) and not any(map(isfinite, bounds)):
         reason = _why_no_bound(result, element, both, bounds, coverage)
     elif isfinite(wrong := _contradicted(bounds, ends)):
-        reason = f"order statistics give {unit.text(wrong)}, beyond the quantile"
+        reason = f"its value, {unit.text(wrong)}, contradicts the estimate"
         bounds = [nan, nan]
     return ToleranceBound(
         coverage,

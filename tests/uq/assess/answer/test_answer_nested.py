@@ -148,7 +148,7 @@ def test_a_bound_that_contradicts_the_quantile_is_no_promise():
     tolerance_bound, statistics = answer(ds).lead.tolerance_bound, summarised(ds)["outputs"]["life"]
     assert statistics["tolerance"]["lower"] > statistics["quantiles"]["0.05"]["value"]
     (days,) = numbers(
-        "No tolerance bound: order statistics give # days, beyond the quantile."
+        "No tolerance bound: its value, # days, contradicts the estimate."
         " The conservative bound is the end of the 95 % interval of the quantile.",
         tolerance_bound.basis,
     )
