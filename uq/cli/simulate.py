@@ -153,7 +153,9 @@ def show_outputs(row: Row) -> None:
     for name, output in row.model.outputs.items():
         states = list(_states(row, name))
         category = _plain(row.model, name, row.columns[name][0]) if output.is_category else None
-        is_empty = not np.any(category) and all(np.isnan(value) and not state for _, value, state in states)
+        is_empty = not np.any(category) and all(
+            np.isnan(value) and not state for _, value, state in states
+        )
         if not output.shown or (row.failed and is_empty):
             continue
         if output.is_category:

@@ -48,9 +48,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         if isinstance(value, dict) or str(value).endswith(".csv"):
             text += '; or {file = "NAME.csv", columns = ["A", "B"]}'
         yield (
-            InputFault(("settings", name), text, value)
-            if name
-            else InputFault(("settings",), text)
+            InputFault(("settings", name), text, value) if name else InputFault(("settings",), text)
         )
     output_faults = partial(_output_faults, model, settings)
     for name in analysis.get("outputs", ()):

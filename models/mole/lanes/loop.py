@@ -73,7 +73,8 @@ def propagator(columns: int, has_soil: bool) -> Callable[..., None]:
                 if m[at.LOOK * LANES + lane] > 0.0:
                     find(lane, m, y, w)
             refine(m, w)
-            warm(m, w)
+            if task.warms:
+                warm(m, w)
             move(m, y, w)
             if columns > 0:
                 move_tangents(m, y, w, columns)

@@ -45,6 +45,8 @@ class System(NamedTuple):
         Relative tolerance of a step.
     budget : int
         Trial steps of each mole.
+    warms : bool
+        Whether the heat in the coil is wanted.
     """
 
     table: Array
@@ -52,6 +54,7 @@ class System(NamedTuple):
     common: Counts
     tolerance: float
     budget: int
+    warms: bool
 
     @property
     def soil(self) -> NDArray[np.bool_]:
@@ -71,6 +74,7 @@ class System(NamedTuple):
             self.common[rows],
             self.tolerance,
             self.budget,
+            self.warms,
         )
 
 
@@ -85,6 +89,7 @@ def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], Syst
             common_periods(p.control_frequency, p.supply_frequency),
             settings.tolerance,
             BUDGET,
+            bool(settings.distance or settings.temperature),
         ),
     )
 
@@ -139,7 +144,16 @@ def advance(
     elif soil.any() and not soil.all():
         raise ValueError("tangents of moles with and without soil ahead differ in length")
     common = system.common if repeat else np.zeros(n, np.int64)
-    task = Task(system.table, record, tangents, limit, common, system.tolerance, system.budget)
+    task = Task(
+        system.table,
+        record,
+        tangents,
+        limit,
+        common,
+        system.tolerance,
+        system.budget,
+        system.warms,
+    )
     columns = tangents.shape[1] // system.measured
     if soil.any() and not soil.all():
         for rows in np.flatnonzero(~soil), np.flatnonzero(soil):

@@ -93,6 +93,8 @@ class Task(NamedTuple):
         Of a step, relative to the scales.
     budget : int
         Steps of a row in all its runs.
+    warms : bool
+        Whether the square of the current is integrated.
     """
 
     table: Any
@@ -102,6 +104,7 @@ class Task(NamedTuple):
     common: Any
     tolerance: float
     budget: int
+    warms: bool
 
 
 def table_of(moles: Mole, n: int) -> Any:

@@ -247,7 +247,9 @@ def test_the_heat_of_the_coil_closes_the_balance_of_energy():
     """R i^2 is the work of the supply less what coil and capacitor store and what moves the bar."""
     p = Params(control_frequency=7.0)
     q = mole(p, "physical")
-    machines = Machines.started(Params._make(np.array([p]).T), Settings(tolerance=1e-11))
+    machines = Machines.started(
+        Params._make(np.array([p]).T), Settings(tolerance=1e-11, distance=(1.0,))
+    )
     machines.run(np.arange(1), np.array([20]))
     y = exact.propagate(q, exact.start(p, q), 20 * q.control_period, 1e-12).state.y
     heat = y[equations.ELECTRICAL_WORK] - y[equations.MAGNETIC_WORK]

@@ -363,7 +363,8 @@ def test_the_events_lead_where_a_time_of_success_has_no_bound():
     assert [line.label for line in shown.card.headline if line.leads] == ["succeed within 1 hour"]
     text = str(shown)
     places = [
-        text.index(part) for part in ("succeed within 1 h ", "no 95/95 bound: more", "50 % succeed by")
+        text.index(part)
+        for part in ("succeed within 1 h ", "no 95/95 bound: more", "50 % succeed by")
     ]
     assert places == sorted(places)
 
