@@ -189,7 +189,7 @@ def _undecided(findings: Findings, quantity: Quantity) -> str:
     censored = None if described is None else described.find("censored")
     if censored is None or not len(findings.rows):
         return ""
-    return f"{percent(censored.estimate.value / len(findings.rows))} undecided, included"
+    return f"{percent(censored.estimate.value / len(findings.rows))} undecided: either way"
 
 
 def _failed_of_median(findings: Findings, quantity: Quantity) -> Estimate | None:

@@ -270,7 +270,7 @@ def number_of(line: Headline) -> str:
         return printed(percent(estimate.value))
     unit = _brief(line.shown)
     if line.label.endswith(f"life{WITH_ERRORS}") and estimate.value <= 0:
-        return "none left"  # the errors are as large as the values
+        return "no life"  # the errors are as large as the values
     if isnan(estimate.value):
         return printed(unit.between(estimate.low, estimate.high))
     return printed(unit.text(estimate.value, line.towards))
