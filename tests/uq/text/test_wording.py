@@ -179,7 +179,7 @@ def test_what_is_counted_is_singular_where_it_is_one():
 
 def test_an_interval_whose_ends_read_alike_is_none():
     assert percent_interval(0.5, 0.625) == "50.0 to 62.5 %"
-    assert percent_interval(1.0, 1.0) == "exact to these digits"
+    assert percent_interval(1.0, 1.0) == "within these digits"
     assert percent_interval(0.0, 1e-4) == "0 to 0.01 %"
-    assert share_text(Estimate(1.0, 1.0, 1.0)) == "100 % (exact to these digits)"
+    assert share_text(Estimate(1.0, 1.0, 1.0)) == "100 % (within these digits)"
     assert share_text(Estimate(0.138, 0.117, 0.162)) == "13.8 % (95 % interval 11.7 to 16.2 %)"
