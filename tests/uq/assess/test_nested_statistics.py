@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from computed import asking, compared, computed, linear, summarised, with_output
-from nested_studies import nested, nested_result
+from nested_studies import nested, nested_result, regimes
 
 import uq as api
 from uq.assess.pairing import Pairing, pairing
@@ -174,22 +174,14 @@ def test_inputs_are_compared_with_their_laws_by_one_row_of_each_sample():
 
 def test_regimes_are_described_by_their_own_rows():
     ds = nested_result(samples=100)
-    attrs = {
-        "role": "output",
-        "kind": "category",
-        "units": "1",
-        "long_name": "regime",
-        "may_be_undefined": 0,
-        "flag_values": np.array([-1, 0, 1], np.int8),
-        "flag_meanings": "none calm wild",
-    }
     codes = (ds["x1"].values > 0.7).astype(np.int8)
-    statistics = summarised(ds.assign(regime=("row", codes, attrs)))
+    ds = regimes(ds, codes)
+    statistics = summarised(ds)
     wild = statistics["regime"]["wild"]
     hits = codes[:: len(codes) // 100]
     low, high = share_interval(hits > 0)
     assert (wild["low"], wild["high"]) == pytest.approx((low, high), abs=0.01)
-    table = api.regimes(ds.assign(regime=("row", codes, attrs)))
+    table = api.regimes(ds)
     assert table["distance"].sel(regime="wild", parameter="x1") == 1.0
     assert table["distance_dummy"].max() > 0.1  # of 100 rows, not of 600
 
