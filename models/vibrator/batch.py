@@ -18,6 +18,9 @@ from models.vibrator.start.regimes import Outcome, wrapped
 from models.vibrator.theory import averaged
 from uq.contract import Status
 
+_Start = tuple[NDArray[np.int8], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]
+"""Regimes, angles [rad], which are undecided, and which lanes can follow."""
+
 
 def batch(
     x: NDArray[np.float64], seed: NDArray[np.uint64], settings: Settings
@@ -57,7 +60,7 @@ def batch(
     }
     seen = outcome.regime, outcome.disphasing, status == Status.OUT_OF_BUDGET
     if settings.duty:
-        life, settings = _lives_in_duty(p, seed, settings)
+        life, settings = _lives_in_duty(p, seed, (*seen, rigid), settings)
     else:
         life = lives(p, seed, *seen, rigid, settings)
     outputs |= {
@@ -90,10 +93,13 @@ def _outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8], N
     return outcome, status, rigid & ~stiff
 
 
-def _lives_in_duty(p: Rows, seed: NDArray[np.uint64], settings: Settings) -> tuple[Lives, Settings]:
+def _lives_in_duty(
+    p: Rows, seed: NDArray[np.uint64], start: _Start, settings: Settings
+) -> tuple[Lives, Settings]:
     """Return the lives of n machines in mixed duty, and the settings in time of operation.
 
-    Ageing does not depend on the feed: a life ends in the state of duty that ends it first.
+    Ageing does not depend on the feed: a life ends in the state of duty that ends it first. `start`
+    is what `lives` needs of the starts with the nominal feed.
     """
     duty = duty_numbers(settings.duty, "mixed", FACTORS, has_gaps=False)
     runs = duty[(duty[:, TIME] > 0) & (duty[:, WEAR] > 0)]
@@ -105,10 +111,12 @@ def _lives_in_duty(p: Rows, seed: NDArray[np.uint64], settings: Settings) -> tup
     )
     in_states = []
     for state in np.unique(runs[:, FIRST_FACTOR:], axis=0):
-        q = p._replace(**{name: getattr(p, name) * state[i] for i, name in enumerate(FACTORS)})
-        outcome, status, rigid = _outcomes(q, replace(operated, instants=()))
-        seen = outcome.regime, outcome.disphasing, status == Status.OUT_OF_BUDGET
-        in_states.append(lives(q, seed, *seen, rigid, operated))
+        q, seen = p, start
+        if (state != 1).any():
+            q = p._replace(**{name: getattr(p, name) * state[i] for i, name in enumerate(FACTORS)})
+            outcome, status, rigid = _outcomes(q, replace(operated, instants=()))
+            seen = outcome.regime, outcome.disphasing, status == Status.OUT_OF_BUDGET, rigid
+        in_states.append(lives(q, seed, *seen, operated))
     every = Lives(*(np.stack(fields) for fields in zip(*in_states, strict=True)))
     order = np.lexsort((every.censored, every.time), axis=0)  # NaN is last
     first = order[0], np.arange(len(seed))
