@@ -157,11 +157,11 @@ GIVEN_BY_USERS = {
 
 
 def test_code_is_reached_by_what_a_user_gave_alone():
-    reach = {"uq.study.installed_models.model_at", "uq.machines.program_or_fmu.machine_of"}
+    reach = {"uq.study.installed_models.model_at", "uq.machines.program.machine_of"}
     reach |= {"uq.machines.server.server_model", "uq.machines.program.program_of"}
     importers = {name for name, names in edges("uq").items() if names & reach}
-    choosers = {"uq.study.installed_models", "uq.machines.program_or_fmu"}  # themselves in `reach`
-    assert importers == GIVEN_BY_USERS | choosers
+    chooser = "uq.study.installed_models"  # itself in `reach`
+    assert importers == {*GIVEN_BY_USERS, chooser}
 
 
 def test_a_worker_imports_no_more_than_it_needs():

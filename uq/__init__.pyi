@@ -6,6 +6,7 @@ from .assess.comparison import compare as compare
 from .assess.components_by_level import levels as levels
 from .assess.convergence import enough as enough
 from .assess.convergence import running_estimates as running_estimates
+from .assess.emulate import emulate as emulate
 from .assess.fleet import fleet as fleet
 from .assess.life_fit import life_fits as life_fits
 from .assess.regimes import regimes as regimes
@@ -17,7 +18,7 @@ from .assess.what_if import what_if as what_if
 from .errors import InputError as InputError
 from .errors import RunError as RunError
 from .execution.loading import load_study as load_study
-from .execution.recomputed_result import recompute as recompute
+from .execution.recomputation import recompute as recompute
 from .execution.runner import run as run
 from .explore.basins import basins as basins
 from .explore.rare_events import rare_event as rare_event

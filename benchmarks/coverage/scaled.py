@@ -13,8 +13,8 @@ from uq.contract import Output
 from uq.result.element import Element
 from uq.sampling.laws import law_of
 from uq.sampling.log_sums import LogTerm
+from uq.stats.estimate import difference
 from uq.stats.importance_weights import smoothed
-from uq.stats.two_samples import difference
 from uq.stats.weighted_means import share_to_compare
 
 LIFE = Output("s", "life", "lifetime")

@@ -34,6 +34,7 @@ Reading order; each part imports only those above it:
     survival               survival curve of a life
     components_by_level    variance components of outputs
     life_fit               laws fitted to lifetimes
+    emulate                emulators: regressions of the outputs of a result
     two_fidelities         estimate from the rows of a result and many more rows of a cheap
     summary                summary of a result
     comparison             compare two studies of one model

@@ -19,8 +19,7 @@ from uq.contract import Floats, Output
 from uq.errors import InputError
 from uq.result.element import Element
 from uq.result.result import AnyResult, Result
-from uq.stats import two_samples
-from uq.stats.estimate import NOTHING, Estimate
+from uq.stats.estimate import NOTHING, Estimate, difference
 from uq.study.file import AnalysisTable
 from uq.text.units import ReadableUnit, typical, unit_of
 
@@ -138,7 +137,7 @@ def _compared(
         apart = Estimate(0.0, -most, most)
         return ComparedStatistic(both[0], both[1], apart, no_row_changes_sides=True)
     if estimator is None or any(statistic.estimate.assumes for statistic in both):
-        apart = two_samples.difference(estimates[0], estimates[1], pair.unpaired)
+        apart = difference(estimates[0], estimates[1], pair.unpaired)
     else:
         apart = pair.difference(estimator, samples, estimates)
     times = pair.ratio(samples, estimates) if is_scale else None
@@ -311,8 +310,7 @@ def _curves(pair: Pair, elements: list[Element]) -> SurvivalCurves:
         for sample in samples
     ]
     apart = tuple(
-        two_samples.difference(first, second, pair.unpaired)
-        for first, second in zip(*both, strict=True)
+        difference(first, second, pair.unpaired) for first, second in zip(*both, strict=True)
     )
     return SurvivalCurves(every, both[0], both[1], apart)
 

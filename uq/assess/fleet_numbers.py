@@ -14,7 +14,7 @@ from uq.assess.weighted_mixture import first_step
 from uq.sampling.designs import several
 from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
-from uq.stats.roots import root
+from uq.stats.quantile_functions import root
 
 LOW, HIGH = 0.05, 0.95
 """Shares of worlds below the ends of a band."""

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from uq.assess.sample import MEAN, SD, Estimator, SelectedRows
 from uq.contract import Floats
 from uq.result.result import Result
-from uq.stats import intervals, two_samples
-from uq.stats.estimate import Estimate
+from uq.stats import intervals
+from uq.stats.estimate import Estimate, difference, ratio
 from uq.stats.intervals import OUTLYING_ROWS, exact_interval
 from uq.stats.jumps import widened_for_jumps
 from uq.stats.moments import OUTLYING_SQUARES
@@ -181,16 +181,14 @@ class Pair:
             ends = intervals.scatter_interval(value, apart)
             return Estimate(value, *self._widened_for_jumps(value, ends, estimator, samples))
         if self.pairing is Pairing.WEIGHTED:
-            return two_samples.difference(estimates[0], estimates[1], self.unpaired)
+            return difference(estimates[0], estimates[1], self.unpaired)
         if estimator.counts_hits and all(rows.is_none for rows in self._dependence):
             estimates = [_newcombe(sample) for sample in samples]
         elif estimator.averages:
             estimates = [self._averaged(i, sample) for i, sample in enumerate(samples)]
         elif self._shared is not None and not estimator.is_share:
             return self._difference_of_moments(estimator, samples, estimates)
-        between = two_samples.difference(
-            estimates[0], estimates[1], self._correlation(estimator, samples)
-        )
+        between = difference(estimates[0], estimates[1], self._correlation(estimator, samples))
         return self._without_rounding(between, estimates)
 
     def _difference_of_moments(
@@ -203,13 +201,13 @@ class Pair:
         """
         correlation = self._correlation(estimator, samples)
         students = [_students(estimator, *pair) for pair in zip(samples, estimates, strict=True)]
-        between = two_samples.difference(students[0], students[1], correlation)
+        between = difference(students[0], students[1], correlation)
         if between.has_interval:
             shift = self._outlier_shift(estimator, samples)
             low, high = between.low + min(shift, 0.0), between.high + max(shift, 0.0)
             between = Estimate(between.value, low, high, between.reason)
         if estimator.is_scale:
-            separate = two_samples.difference(estimates[0], estimates[1], correlation)
+            separate = difference(estimates[0], estimates[1], correlation)
             between = _envelope(between, separate)
         return self._without_rounding(between, estimates)
 
@@ -260,11 +258,11 @@ class Pair:
                 estimates[1].value / estimates[0].value, by_replicate[1], by_replicate[0]
             )
         correlation = self._correlation(SD, samples)
-        separate = two_samples.ratio(estimates[0], estimates[1], correlation)
+        separate = ratio(estimates[0], estimates[1], correlation)
         if self._shared is None:
             return separate
         students = [_students(SD, *pair) for pair in zip(samples, estimates, strict=True)]
-        factor = two_samples.ratio(students[0], students[1], correlation)
+        factor = ratio(students[0], students[1], correlation)
         if factor.has_interval:
             shift = self._outlier_shift(SD, samples, relative=True)
             low, high = (float(np.exp(end)) for end in (min(shift, 0.0), max(shift, 0.0)))

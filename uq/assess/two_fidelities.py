@@ -1,12 +1,13 @@
 """Estimate from the rows of a result and many more rows of a cheap twin of its model.
 
-The twin is an output that the model can compute alone, or the same outputs with settings that make
-a row cheap, such as fewer modes.
+The twin is an output that the model can compute alone, the same outputs with settings that make a
+row cheap, such as fewer modes, or an emulator of the rows.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -16,8 +17,9 @@ from uq.assess.fact import Fact
 from uq.assess.failed_rows import failed_share_bounds
 from uq.assess.sample import share_of
 from uq.assess.statistics.quantiles import SIDES
-from uq.contract import Floats
+from uq.contract import Floats, Model
 from uq.errors import InputError, first_fault_alone
+from uq.machines.emulator import emulator_at, model_of_emulator
 from uq.result.element import Element
 from uq.result.result import AnyResult, Result
 from uq.result.result_file import build_rows
@@ -27,10 +29,12 @@ from uq.stats.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import FEW, mean_interval, share_interval
 from uq.stats.moments import moments
+from uq.study.changes import study_text
 from uq.study.definition import Study, study_from_text
 from uq.study.evaluate import evaluate
+from uq.study.installed_models import find_model
 from uq.study.row_sampling import row_block, row_seeds, rows
-from uq.text.literals import toml
+from uq.text.literals import read_toml, toml
 
 MOST_ROWS = 1_000_000
 """Rows of the twin at most."""
@@ -89,15 +93,20 @@ class TwoFidelities:
     outputs: Mapping[str, Mapping[str, ControlVariateEstimate]]
 
 
-def two_fidelities(result: AnyResult, model: str | None = None) -> pd.DataFrame:
+def two_fidelities(
+    result: AnyResult, model: str | None = None, emulator: str | Path | None = None
+) -> pd.DataFrame:
     """Estimate means and probabilities with the help of a cheap twin of the same model.
 
     Parameters
     ----------
     result : Result, xarray.Dataset or path
-        A result of a study with ``[analysis] twin``.
+        A result of a study with ``[analysis] twin``, if no emulator is given.
     model : str, optional
         Where a model that is not installed lives, as for `load_study`.
+    emulator : str or Path, optional
+        File of `uq.emulate`: the twin. The estimates are unbiased whatever the emulator is worth,
+        since it predicts each row from other rows (cross-fitting).
 
     Returns
     -------
@@ -110,12 +119,12 @@ def two_fidelities(result: AnyResult, model: str | None = None) -> pd.DataFrame:
     Raises
     ------
     InputError
-        When the study names no twin.
+        When the study names no twin, or the emulator is of other settings or inputs.
     """
     result = Result.of(result)
     lines = {
         (name, label): (*sharpened.estimate.numbers, *sharpened.plain.numbers, sharpened.reduction)
-        for name, estimates in with_twin(result, model).outputs.items()
+        for name, estimates in with_twin(result, model, emulator).outputs.items()
         for label, sharpened in estimates.items()
     }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "estimate"])
@@ -123,34 +132,76 @@ def two_fidelities(result: AnyResult, model: str | None = None) -> pd.DataFrame:
     return pd.DataFrame(list(lines.values()), index=index, columns=columns)
 
 
-def with_twin(result: Result, model: str | None = None) -> TwoFidelities:
+class _Twin(NamedTuple):
+    """What is computed beside the rows: a model and settings, for the laws of a study."""
+
+    name: str
+    study: Study
+    model: Model
+    settings: Any
+    outputs: tuple[str, ...]
+    per_row: int
+
+
+def with_twin(
+    result: Result, model: str | None = None, emulator: str | Path | None = None
+) -> TwoFidelities:
     """Return the estimates of `two_fidelities` as records."""
     result.refuse_if_weighted("estimates with a twin")
+    twin = _named_twin(result, model) if emulator is None else _emulated(result, Path(emulator))
+    here, many = _here(twin, result), _many(twin, len(result))
+    outputs = [name for name in result.shown_outputs(result.analysis) if name != twin.name]
+    by_element = {}
+    for element in result.elements(outputs):
+        for control, others in zip(here, many, strict=True):
+            same = control.name == element.name
+            alone = control.output == twin.name and control.place.items() <= element.place.items()
+            if same or alone:
+                thresholds = result.analysis.thresholds.get(element.output, ())
+                estimates = dict(_estimates(element, control, others, thresholds))
+                by_element[element.name] = estimates
+    return TwoFidelities(
+        twin.name,
+        len(result),
+        len(many[0].values),
+        {name: estimates for name, estimates in by_element.items() if estimates},
+    )
+
+
+def _named_twin(result: Result, model: str | None) -> _Twin:
+    """Return the twin that the study names."""
     with first_fault_alone():
         study = study_from_text(result.dataset.attrs["study"], "study of this result", model)
+    study = study.with_samples(int(result.dataset.attrs["samples"]))
     twin = study.analysis.twin
     if not twin:
         cheap = ", ".join(study.model.cheap) or "none"
         raise InputError(
             "the study names no twin: [analysis] twin = NAME of an output that model"
             f" '{study.model.name}' can compute alone ({cheap}), or a table of settings that make"
-            " its rows cheap"
+            " its rows cheap; or give an emulator of the rows"
         )
+    if isinstance(twin, str):
+        return _Twin(twin, study, study.model.alone(twin), study.settings, (twin,), PER_ROW)
+    settings = read_settings(study.model, asdict(study.settings) | twin)[0]
+    outputs = result.shown_outputs(study.analysis)
+    return _Twin(toml(twin), study, study.model, settings, outputs, PER_ROW_OF_SETTINGS)
+
+
+def _emulated(result: Result, path: Path) -> _Twin:
+    """Return an emulator as twin: it predicts each row from rows of other parts."""
+    emulator = emulator_at(path)
+    data = read_toml(result.dataset.attrs["study"])
+    data.pop("analysis", None)  # it may name outputs without an emulator
+    with first_fault_alone():
+        study = study_from_text(study_text(data), "study of this result", str(path))
     study = study.with_samples(int(result.dataset.attrs["samples"]))
-    here, many = _here(study, result), _many(study, len(result))
-    outputs = [name for name in result.shown_outputs(study.analysis) if name != twin]
-    by_element = {}
-    for element in result.elements(outputs):
-        for control, others in zip(here, many, strict=True):
-            same = control.name == element.name
-            if same or (control.output == twin and control.place.items() <= element.place.items()):
-                by_element[element.name] = dict(_estimates(element, control, others, study))
-    return TwoFidelities(
-        twin if isinstance(twin, str) else toml(twin),
-        len(result),
-        len(many[0].values),
-        {name: estimates for name, estimates in by_element.items() if estimates},
-    )
+    model = model_of_emulator(emulator, "", find_model, cross_fitted=True)
+    shown = result.shown_outputs(result.analysis)
+    outputs = tuple(name for name in shown if name in model.outputs)
+    if not outputs:
+        raise InputError(f"{path}: has none of the outputs that the study reports")
+    return _Twin(str(path), study, model, study.settings, outputs, PER_ROW)
 
 
 def twin_facts(fidelities: TwoFidelities) -> Fact:
@@ -180,7 +231,7 @@ _SHARE = (controlled_share,), (share_of, share_interval)
 
 
 def _estimates(
-    element: Element, control: Element, many: Element, study: Study
+    element: Element, control: Element, many: Element, thresholds: Sequence[float]
 ) -> Iterator[tuple[str, ControlVariateEstimate]]:
     present, kept = element.present, ~element.failed
     if present.any() and not (element.never | element.censored).any():
@@ -190,7 +241,7 @@ def _estimates(
                 element.values, present, controls=_filled(control), many=_filled(many)
             )
             yield "mean", ControlVariateEstimate(*controlled, alone)
-    for threshold in study.analysis.thresholds.get(element.output, ()):
+    for threshold in thresholds:
         if element.unknown_sides(threshold).any() or not kept.any():
             continue
         sides = (element.above(threshold) > 0, element.below(threshold) > 0)
@@ -226,40 +277,33 @@ def _filled(control: Element) -> Floats:
     return np.stack([np.where(finite, control.values, 0.0), ~finite], axis=1)
 
 
-def _here(study: Study, result: Result) -> list[Element]:
+def _here(twin: _Twin, result: Result) -> list[Element]:
     """Return the twin of the rows of a result."""
     n = len(result)
-    x = [np.broadcast_to(result.dataset[name].values, n) for name in study.model.parameter_names]
+    x = [np.broadcast_to(result.dataset[name].values, n) for name in twin.model.parameter_names]
     keys = (
         result.dataset[name].values.astype(np.int64) for name in ("replicate", "group", "block")
     )
-    return _twin_of(study, np.stack(x, 1), row_seeds(study.design.seed, *keys))
+    return _twin_of(twin, np.stack(x, 1), row_seeds(twin.study.design.seed, *keys))
 
 
-def _many(study: Study, start: int) -> list[Element]:
+def _many(twin: _Twin, start: int) -> list[Element]:
     """Return the twin of the rows that come next in the study, independent of all others."""
-    per_row = PER_ROW if isinstance(study.analysis.twin, str) else PER_ROW_OF_SETTINGS
-    wanted = min(per_row * start, MOST_ROWS)
+    study, wanted = twin.study, min(twin.per_row * start, MOST_ROWS)
     per_sample = rows(study) // study.design.samples
     longer = study.with_samples(study.design.samples + -(-wanted // per_sample))
     parts = [
-        _twin_of(longer, block.x, block.seed)
+        _twin_of(twin, block.x, block.seed)
         for first in range(start, rows(longer), _BLOCK)
         for block in [row_block(longer, first, min(first + _BLOCK, rows(longer)))]
     ]
     return [_joined(pieces) for pieces in zip(*parts, strict=True)]
 
 
-def _twin_of(study: Study, x: Floats, seed: NDArray[np.uint64]) -> list[Element]:
-    model, settings, twin = study.model, study.settings, study.analysis.twin
-    if isinstance(twin, str):
-        model = model.alone(twin)
-    else:  # the same outputs, from rows that cost less
-        settings = read_settings(model, asdict(settings) | twin)[0]
-    chunk = evaluate(model, settings, x, seed)
-    computed = Result(build_rows(model, settings, {}, chunk.columns, chunk.status, {}))
-    outputs = (twin,) if isinstance(twin, str) else computed.shown_outputs(study.analysis)
-    return list(computed.elements(outputs))
+def _twin_of(twin: _Twin, x: Floats, seed: NDArray[np.uint64]) -> list[Element]:
+    chunk = evaluate(twin.model, twin.settings, x, seed)
+    computed = Result(build_rows(twin.model, twin.settings, {}, chunk.columns, chunk.status, {}))
+    return list(computed.elements(twin.outputs))
 
 
 def _joined(pieces: tuple[Element, ...]) -> Element:

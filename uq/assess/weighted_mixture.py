@@ -32,7 +32,7 @@ from uq.stats.intervals import (
     share_interval,
     upper_probability,
 )
-from uq.stats.roots import root
+from uq.stats.quantile_functions import root
 from uq.stats.weighted_means import (
     EXACT,
     binomial_sizes,

@@ -29,6 +29,7 @@ GROUPS: dict[str, dict[Callable[..., Any], str]] = {
         results.sensitivity: "uq sensitivity results/exponential-wear.nc --output life",
         results.levels: "uq levels results/mole-outcome.nc",
         results.twin: "uq twin results/vibrator-tolerances.nc",
+        results.emulate: "uq emulate results/ishigami.nc -o ishigami.emulator",
         results.export: "uq export results/exponential-wear.nc --csv rows.csv",
         results.plot: "uq plot results/exponential-wear.nc",
         results.report: "uq report results/exponential-wear.nc --open",

@@ -1,12 +1,15 @@
-"""Terminal output of ``uq twin``, ``uq convergence`` and ``uq fleet``."""
+"""Terminal output of ``uq twin``, ``uq emulate``, ``uq convergence`` and ``uq fleet``."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 from uq.assess.answer.answer import verdict
 from uq.assess.answer.wording import NumberTarget
 from uq.assess.convergence import convergence_facts, converging
+from uq.assess.emulate import emulate as fitted
+from uq.assess.emulate import emulator_facts
 from uq.assess.findings import Findings
 from uq.assess.fleet import fleet_facts, fleet_of, lifetime_element, reasons
 from uq.assess.fleet_numbers import Banded
@@ -14,7 +17,7 @@ from uq.assess.two_fidelities import twin_facts, with_twin
 from uq.cli.printing import CELLS, cells, grid, heading, note, paragraph, print_json, title
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, failed_bounds_text, interval_text, value_text
-from uq.text.numbers import in_brackets, threshold
+from uq.text.numbers import in_brackets, percent, threshold
 from uq.text.quantities import read_threshold
 from uq.text.units import typical, unit_of
 
@@ -44,10 +47,10 @@ def _ends(estimate: Estimate, per: float) -> str:
     return interval_text(estimate, per) if estimate.has_interval else ""
 
 
-def twin(result: Path, model: str | None, json: bool) -> None:
-    """Show control-variate estimates of means and probabilities with the study's twin."""
+def twin(result: Path, model: str | None, emulator: Path | None, json: bool) -> None:
+    """Show control-variate estimates of means and probabilities with a twin."""
     opened = Result.open(result)
-    fidelities = with_twin(opened, model)
+    fidelities = with_twin(opened, model, emulator)
     if json:
         print_json(twin_facts(fidelities).json)
         return
@@ -82,6 +85,42 @@ def twin(result: Path, model: str | None, json: bool) -> None:
         " rows. The twin pays if one of its rows takes less than (worth - 1) /"
         f" {1 + fidelities.cheap_rows / fidelities.rows:.3g} of the time of a row"
     )
+
+
+def emulate(result: Path, path: Path, outputs: Sequence[str], json: bool) -> None:
+    """Fit emulators of the outputs of a result, write them, and show their errors."""
+    emulator = fitted(result, path, outputs)
+    facts = emulator_facts(emulator).json
+    if json:
+        print_json(facts)
+        return
+    heading(f"{path}", f"emulator of {len(emulator.x)} rows of {emulator.source['title']}")
+    lines = []
+    for name, numbers in facts["outputs"].items():
+        if not numbers["refused"]:
+            wrong = numbers.get("misclassified")
+            lines.append(
+                (name, numbers["kind"], *_errors(numbers), percent(wrong) if wrong else "")
+            )
+    grid(lines, header=("", "kind", "Q2", "error", "wrong label"))
+    for name, numbers in facts["outputs"].items():
+        if numbers["refused"]:
+            paragraph(f"{name}: refused: {numbers['refused']}", indent=0)
+    note(
+        "Q2: share of the variance explained in rows left out; error: root of their mean square. A"
+        f" row of 'uq run STUDY --model {path}' has an error drawn from these, so its scatter is"
+        f" right, but a bias remains: 'uq twin {result} --emulator {path}' has none"
+    )
+
+
+def _errors(numbers: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Return the share of the variance that is explained, the error, and the wrong labels."""
+    wrong = percent(numbers["misclassified"]) if "misclassified" in numbers else ""
+    if numbers["q2"] is None:
+        return "", "", wrong
+    error = numbers["error_sd"]
+    relative = percent(error) if numbers.get("logarithm") else f"{error:.2g}"
+    return f"{numbers['q2']:.4f}", relative, wrong
 
 
 def convergence(result: Path, output: str | None, json: bool) -> None:

@@ -20,8 +20,7 @@ from uq.cli.summary_tables import Block
 from uq.errors import InputError
 from uq.files.whole_files import write_result
 from uq.result.result import Result
-from uq.stats import two_samples
-from uq.stats.estimate import Estimate, rounded_text
+from uq.stats.estimate import Estimate, difference, rounded_text
 from uq.stats.importance_weights import ImportanceWeights
 from uq.study.file import Tied
 from uq.text import literals
@@ -237,7 +236,7 @@ def _changed(result: Result, changes: Mapping[str, Any], target: Path | None) ->
         raise InputError("-o: only rows computed again are written: change settings or [fixed]")
     again = result
     if others:
-        from uq.execution.recomputed_result import recompute
+        from uq.execution.recomputation import recompute
 
         if target is not None:
             others |= {"study.name": target.stem}
@@ -269,7 +268,7 @@ def _lines(
     first, second = before.estimate, after.estimate
     apart = Estimate()
     if isfinite(first.value) and isfinite(second.value):
-        apart = two_samples.difference(first.finite, second.finite, WORST)
+        apart = difference(first.finite, second.finite, WORST)
     excludes = apart.low > 0 or apart.high < 0
     cells = [_share(both) if per is None else rounded_text(both, per) for both in (first, second)]
     value, ends = _difference(apart, 0.01 if per is None else per)

@@ -16,8 +16,7 @@ Reading order; each part imports only those above it:
     workers         dask workers, local or on a cluster
     loading         load studies and models, and run one row of a model
     clusters        dask workers of this computer, or of an existing cluster
-    recomputed_row  recomputation of a stored row, and its comparison with the stored values
-    recomputed_result  a result computed again from what its rows have kept
+    recomputation   rows computed again: one, or all from what they have kept
     executor        rows of one run
     planning        cost of a study, estimated from a few of its rows
     runner          run of a study: rows in chunks, on this computer or on dask workers

@@ -14,7 +14,7 @@ from uq.contract import Status
 from uq.errors import InputError
 from uq.execution import resuming, runner
 from uq.execution.options import DEFAULTS, RunOptions
-from uq.execution.recomputed_row import (
+from uq.execution.recomputation import (
     changed_settings,
     computed_again,
     differing,

@@ -9,6 +9,5 @@ Reading order; each part imports only those above it:
     single_rows          single rows: a single run of a model, or a recomputed row of a result
     importance_sampling  importance sampling of rare events
     updating             a study or a result, updated with inspections
-    rare_event_notes     caveats of a rare-event probability that its numbers do not show
     rare_events          rare events
 """

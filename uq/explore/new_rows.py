@@ -14,7 +14,7 @@ from scipy import special
 from uq.contract import Floats
 from uq.errors import InputError, RunError, choices
 from uq.execution.options import RunOptions
-from uq.execution.recomputed_row import study_here
+from uq.execution.recomputation import study_here
 from uq.execution.runner import carry_out, run_study
 from uq.learning.evidence import on_wide_grids
 from uq.learning.importance import repetitions_of, with_rounds

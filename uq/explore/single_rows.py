@@ -11,7 +11,7 @@ import xarray as xr
 from uq.contract import Model, Status
 from uq.errors import InputError
 from uq.execution.loading import run_alone
-from uq.execution.recomputed_row import (
+from uq.execution.recomputation import (
     computed_again,
     differing,
     other_versions,

@@ -1,4 +1,4 @@
-"""Models from outside: functions, programs, servers and FMUs as `uq.contract.Model`.
+"""Models from outside: functions, programs, servers, FMUs, emulators as `uq.contract.Model`.
 
 Reading order; each part imports only those above it:
 
@@ -16,5 +16,6 @@ Reading order; each part imports only those above it:
     program_outputs  outputs of a program
     fmu              an FMU as a machine: each row simulates a separate instance
     program          program as a machine: each row is computed in a separate folder
-    program_or_fmu   choice between the two kinds of machine files: of a program, and of an FMU
+    regressions      regressions of an output on inputs, by OpenTURNS
+    emulator         an emulator as a machine: outputs predicted by regressions
 """

@@ -2,14 +2,12 @@
 
 Reading order; each part imports only those above it:
 
-    estimate              estimate
-    quantile_functions    quantile functions of the normal, Student
-    roots                 roots of a function of one variable
+    estimate              estimate; differences and ratios of two
+    quantile_functions    quantile functions of the normal, Student; roots
     jumps                 error of a mean from discontinuities in stratified designs
     dependent_rows        dependence between rows: replicates, several rows per sample, a shared law
     location_scale        maximum likelihood for censored Weibull and lognormal lives
     estimate_json         estimates as JSON
-    two_samples           difference and ratio of two estimates
     intervals             confidence intervals of means and proportions, 95 % by default
     control_variate       control variates
     group_sequential      group-sequential confidence levels

@@ -11,8 +11,7 @@ import numpy as np
 from scipy import special
 
 from uq.stats.intervals import CONFIDENCE, upper_probability
-from uq.stats.quantile_functions import student
-from uq.stats.roots import root
+from uq.stats.quantile_functions import root, student
 
 MOST_AT_STAKE = 2
 """Most successive checks at which independent rows may stop, for a given half-width."""

@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import upper_probability
-from uq.stats.quantile_functions import student
-from uq.stats.roots import root
+from uq.stats.quantile_functions import root, student
 from uq.text.numbers import counted
 
 FARTHEST = 0.1

@@ -30,7 +30,10 @@ from uq.study.sources import fingerprint, found_at, own_packages
 
 GROUP = "vibrolife.models"
 
-_MACHINES = (".toml", ".fmu")
+SUFFIX = ".emulator"
+"""Ending of the file of an emulator (`uq.machines.emulator`)."""
+
+_MACHINES = (".toml", ".fmu", SUFFIX)
 _SERVERS = ("http://", "https://")
 _FILE = re.compile(r"(.+\.py)(?::(\w+))?")
 _KNOWN_TO_RETURN = "\n"  # in a reference, the declared returns of a function follow it
@@ -94,8 +97,12 @@ def model_at(reference: str) -> Model:
     InputError
         The model does not exist, or its package cannot be imported.
     """
+    if reference.endswith(SUFFIX):
+        from uq.machines.emulator import emulator_model
+
+        return emulator_model(Path(reference), find_model)
     if reference.endswith(_MACHINES):
-        from uq.machines.program_or_fmu import machine_of
+        from uq.machines.program import machine_of
 
         return machine_of(Path(reference))
     plain, _, returns = reference.partition(_KNOWN_TO_RETURN)
@@ -317,8 +324,12 @@ def code_of(reference: str) -> str:
     InputError
         The model has no source file.
     """
+    if reference.endswith(SUFFIX):
+        from uq.machines.emulator import code_of_emulator
+
+        return code_of_emulator(Path(reference))
     if reference.endswith(_MACHINES):
-        from uq.machines.program_or_fmu import code_of_machine
+        from uq.machines.program import code_of_machine
 
         return code_of_machine(Path(reference))
     if reference.startswith(_SERVERS):

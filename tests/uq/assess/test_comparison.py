@@ -18,10 +18,9 @@ from scipy import stats
 import uq as api
 from uq.contract import Status
 from uq.result.result import Result
-from uq.stats.estimate import Estimate
+from uq.stats.estimate import Estimate, difference
 from uq.stats.intervals import wilson_interval
 from uq.stats.moments import sd_interval
-from uq.stats.two_samples import difference
 
 
 def width(row, estimate="mean"):

@@ -13,8 +13,8 @@ from uq.contract import Output
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
+from uq.stats.estimate import difference
 from uq.stats.importance_weights import effective_rows, smoothed
-from uq.stats.two_samples import difference
 from uq.stats.weighted_means import (
     EXACT,
     FEW,

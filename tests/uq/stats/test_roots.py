@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
-from uq.stats.roots import root
+from uq.stats.quantile_functions import root
 
 
 class Counted:

@@ -363,12 +363,38 @@ def what_if(
 
 
 def twin(
-    result: given.ResultFile, model: given.ModelReference = None, json: given.Json = False
+    result: given.ResultFile,
+    emulator: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Of 'uq emulate': the twin.")
+    ] = None,
+    model: given.ModelReference = None,
+    json: given.Json = False,
 ) -> None:
-    """Sharpen estimates with many rows of a cheap output."""
+    """Sharpen estimates with many rows of a cheap output, or of an emulator."""
     from uq.cli import estimates
 
-    estimates.twin(result, model, json)
+    estimates.twin(result, model, emulator, json)
+
+
+def emulate(
+    result: given.ResultFile,
+    file: Annotated[
+        Path,
+        typer.Option("-o", "--file", metavar="FILE.emulator", help="Where to write it."),
+    ],
+    output: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME", help="Only this output.", autocompletion=completion.complete_output
+        ),
+    ] = None,
+    json: given.Json = False,
+) -> None:
+    """Learn the outputs of a result: a model for 'uq run --model FILE.emulator'."""
+    from uq.cli import estimates
+
+    with _naming_new_folders(file):
+        estimates.emulate(result, file, output or (), json)
 
 
 def trace(

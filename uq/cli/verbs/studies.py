@@ -146,7 +146,7 @@ def schema(
 ) -> None:
     """Print the JSON Schema of study files, for an editor."""
     from uq.cli.printing import print_json
-    from uq.machines.program_or_fmu import machine_schema
+    from uq.machines.program import machine_schema
     from uq.study.schema import json_schema
 
     print_json(machine_schema() if machine else json_schema())

@@ -11,11 +11,10 @@ Reading order; each part imports only those above it:
     first_screen      the card of a result on a page: tiles of its numbers, a table of its causes
     inputs            the inputs in a report: laws, sources, and the quality of each number
     tolerances        other tolerances
-    levels            samples of several rows in a report
     pictures          figures of a page: embedded SVG, or an image if the SVG would be too large
     embedded_rows     rows inside a page, with which its scripts (``live/``) compute
     outcomes          rows in a report
-    convergence       convergence in a report
+    convergence       convergence, variance by level, and fleets in a report
     page              report of a result as one HTML file
     dossier           the contents of a report
 """

@@ -20,12 +20,11 @@ from uq.assess.summary import REGIME
 from uq.errors import InputError
 from uq.files.whole_files import check_target, whole
 from uq.render.html.answer import STYLE, fragment, regimes, warning
-from uq.render.html.convergence import convergence_of
+from uq.render.html.convergence import convergence_of, fleet_notes, fleet_table, levels_of
 from uq.render.html.embedded_rows import rows_inside, why_no_rows
 from uq.render.html.first_screen import first_screen
 from uq.render.html.indices import of_output, sensitivity_of
 from uq.render.html.inputs import fixed_inputs, input_tables
-from uq.render.html.levels import fleet_notes, fleet_table, levels_of
 from uq.render.html.outcomes import groups, outcomes, regime_tables, status_table
 from uq.render.html.pictures import Picture, pictures
 from uq.result.result import Result

@@ -15,7 +15,7 @@ from uq.assess.summary import REGIME
 from uq.indices.methods import METHODS
 from uq.render.html.answer import fragment, warning
 from uq.render.html.cells import Cell, HtmlTable
-from uq.render.html.convergence import convergence_of
+from uq.render.html.convergence import convergence_of, fleet_notes, fleet_table, levels_of
 from uq.render.html.dossier.assessment import (
     context,
     information,
@@ -26,7 +26,6 @@ from uq.render.html.dossier.assessment import (
 )
 from uq.render.html.dossier.outline import DOCUMENTS, Heading, Item
 from uq.render.html.indices import of_output, sensitivity_of
-from uq.render.html.levels import fleet_notes, fleet_table, levels_of
 from uq.render.html.outcomes import (
     assumed_scales,
     category_table,

@@ -1,0 +1,334 @@
+"""Regressions of an output on inputs, by OpenTURNS: polynomial chaos and Gaussian process.
+
+A regression is kept as plain numbers, from which it predicts the same bits in any process.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import kurtosis, skew
+
+from uq.contract import Floats
+from uq.errors import InputError
+
+MOST_TERMS = 500
+"""Largest number of polynomials among which terms are selected."""
+
+FOLDS = 5
+"""Number of parts of the rows that are predicted, each from the rows of the others."""
+
+MOST_OF_PROCESS = 600
+"""Largest number of rows of a Gaussian process, whose cost grows with their cube."""
+
+_FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estimated
+_ROWS_PER_TERM = (4.0, 2.0, 1.0, 0.5)  # among which terms are selected
+_RATIO = 3.0  # of largest to smallest value from which logarithms may be used
+_FLAT = -0.8  # excess kurtosis below which a column counts as uniform; -1.2 of a uniform law
+
+Predict = Callable[[Floats], tuple[Floats, Floats]]
+"""Scaled inputs, shape (n, d) -> means, and standard deviations up to a factor, shape (n,) each."""
+
+
+def openturns() -> Any:
+    """Return OpenTURNS, silenced.
+
+    Raises
+    ------
+    InputError
+        When it is not installed.
+    """
+    try:
+        import openturns
+    except ImportError:
+        raise InputError("emulators need OpenTURNS: pip install 'vibrolife[reliability]'") from None
+    openturns.Log.Show(openturns.Log.NONE)
+    openturns.TBB.Disable()  # rows are computed in parallel by the run itself
+    return openturns
+
+
+class Scale(NamedTuple):
+    """Scale of an input in a regression: uniform on [-1, 1], or of mean 0 and sd 1.
+
+    Attributes
+    ----------
+    name : str
+    logarithmic, uniform : bool
+    centre, half : float
+        Of the range of a uniform input, else mean and standard deviation; of its logarithm if it is
+        logarithmic.
+    low, high : float
+        Range of the rows, scaled.
+    """
+
+    name: str
+    logarithmic: bool
+    uniform: bool
+    centre: float
+    half: float
+    low: float
+    high: float
+
+    def __call__(self, values: Floats) -> Floats:
+        """Return scaled values."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return ((np.log(values) if self.logarithmic else values) - self.centre) / self.half
+
+
+def scale_of(name: str, values: Floats) -> Scale:
+    """Return the scale of an input by its values in the rows, which are not all equal."""
+    logarithmic = bool(
+        values.min() > 0
+        and values.max() > _RATIO * values.min()
+        and abs(skew(np.log(values))) < abs(skew(values))
+    )
+    column = np.log(values) if logarithmic else values
+    uniform = bool(kurtosis(column) < _FLAT)
+    low, high = float(column.min()), float(column.max())
+    centre, half = (
+        ((low + high) / 2, (high - low) / 2)
+        if uniform
+        else (float(column.mean()), float(column.std()))
+    )
+    return Scale(
+        name, logarithmic, uniform, centre, half, (low - centre) / half, (high - centre) / half
+    )
+
+
+def _basis(uniform: tuple[bool, ...]) -> Any:
+    ot = openturns()
+    factors = [ot.LegendreFactory() if flat else ot.HermiteFactory() for flat in uniform]
+    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(uniform), 0.6)
+    return ot.OrthogonalProductPolynomialFactory(
+        [ot.OrthogonalUniVariatePolynomialFamily(factor) for factor in factors], enumerate_terms
+    )
+
+
+def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> dict[str, Any]:
+    """Return a sparse polynomial chaos expansion: its polynomials and their coefficients.
+
+    Terms are selected by least angle regression and the corrected leave-one-out error [1]_, from
+    the number of polynomials for which this error is least.
+
+    References
+    ----------
+    .. [1] G. Blatman, B. Sudret, "Adaptive sparse polynomial chaos expansion based on least angle
+       regression", J. Comput. Phys. 230, 2345-2367 (2011).
+    """
+    ot = openturns()
+    basis = _basis(uniform)
+    laws = [ot.Uniform(-1.0, 1.0) if flat else ot.Normal() for flat in uniform]
+    selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
+    results = []
+    for rows_per_term in _ROWS_PER_TERM:
+        algorithm = ot.FunctionalChaosAlgorithm(
+            ot.Sample(z),
+            ot.Sample(y[:, None]),
+            ot.JointDistribution(laws),
+            ot.FixedStrategy(basis, min(MOST_TERMS, int(len(y) / rows_per_term))),
+            ot.LeastSquaresStrategy(selection),
+        )
+        algorithm.run()
+        results.append(algorithm.getResult())
+    result = min(results, key=lambda result: min(result.getErrorHistory()))
+    return {
+        "terms": [int(i) for i in result.getIndices()],
+        "coefficients": [float(c) for c in np.array(result.getCoefficients())[:, 0]],
+    }
+
+
+def _chaos(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
+    ot = openturns()
+    basis = _basis(uniform)
+    polynomials = [basis.build(i) for i in fit["terms"]]
+    expansion = ot.LinearCombinationFunction(polynomials, fit["coefficients"])
+
+    def predict(at: Floats) -> tuple[Floats, Floats]:
+        return np.array(expansion(ot.Sample(at)))[:, 0], np.ones(len(at))
+
+    return predict
+
+
+def _kernel(scale: list[float], amplitude: float) -> Any:
+    return openturns().MaternModel(scale, [amplitude], 2.5)
+
+
+def _process_fitter(z: Floats, y: Floats, kernel: Any) -> Any:
+    ot = openturns()
+    trend = ot.ConstantBasisFactory(z.shape[1]).build()
+    return ot.GaussianProcessFitter(ot.Sample(z), ot.Sample(y[:, None]), kernel, trend)
+
+
+def fit_process(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> dict[str, Any]:
+    """Return the most likely Gaussian process: a Matern 5/2 kernel, its scales and sd.
+
+    They are estimated from the first 150 rows: the cost grows with the cube of their number.
+    """
+    ot = openturns()
+    d = z.shape[1]
+    fitter = _process_fitter(z[:_FOR_SCALES], y[:_FOR_SCALES], _kernel([1.0] * d, 1.0))
+    search = ot.Cobyla()
+    search.setMaximumCallsNumber(300)
+    search.setMaximumAbsoluteError(1e-3)
+    search.setMaximumRelativeError(1e-3)
+    search.setCheckStatus(False)
+    fitter.setOptimizationAlgorithm(search)
+    fitter.setOptimizationBounds(ot.Interval([0.02] * d, [50.0] * d))
+    fitter.run()
+    kernel = fitter.getResult().getCovarianceModel()
+    return {"scale": list(kernel.getScale()), "amplitude": kernel.getAmplitude()[0]}
+
+
+def _process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
+    ot = openturns()
+    fitter = _process_fitter(z, y, _kernel(fit["scale"], fit["amplitude"]))
+    fitter.setOptimizeParameters(False)
+    fitter.run()
+    regression = ot.GaussianProcessRegression(fitter.getResult())
+    regression.run()
+    mean = regression.getResult().getMetaModel()
+    covariance = ot.GaussianProcessConditionalCovariance(regression.getResult())
+
+    def predict(at: Floats) -> tuple[Floats, Floats]:
+        variance = np.array(covariance.getConditionalMarginalVariance(ot.Sample(at)))[:, 0]
+        return np.array(mean(ot.Sample(at)))[:, 0], np.sqrt(np.maximum(variance, 1e-20))
+
+    return predict
+
+
+CHAOS, PROCESS = "polynomial-chaos", "gaussian-process"
+
+_KINDS = {CHAOS: (fit_chaos, _chaos), PROCESS: (fit_process, _process)}
+"""Kind of regression -> its fit, and its prediction from plain numbers."""
+
+
+class Regression(NamedTuple):
+    """A regression of an output on scaled inputs, with the errors of predictions of other rows.
+
+    Attributes
+    ----------
+    kind : str
+    rows : list of int
+        Positions of its rows among those of the emulator.
+    values : list of float
+        The output in these rows, standardised.
+    mean, sd : float
+        Of the output.
+    fit : dict
+        Fitted to all rows.
+    folds : list of dict
+        Fitted to the rows of all parts but one.
+    errors : list of float
+        Of each row, predicted from the other parts, over `sd`.
+    deviations : list of float
+        Predicted standard deviations of these errors, up to a factor.
+    """
+
+    kind: str
+    rows: list[int]
+    values: list[float]
+    mean: float
+    sd: float
+    fit: dict[str, Any]
+    folds: list[dict[str, Any]]
+    errors: list[float]
+    deviations: list[float]
+
+    @property
+    def q2(self) -> float:
+        """Share of the variance that predictions from the other parts explain."""
+        return 1.0 - float(np.mean(np.square(self.errors)))
+
+    @property
+    def error_sd(self) -> float:
+        """Root of the mean squared error of predictions from the other parts."""
+        return self.sd * float(np.sqrt(np.mean(np.square(self.errors))))
+
+
+class Predictor:
+    """Predictions of a regression, prepared when they are first needed.
+
+    Parameters
+    ----------
+    regression : Regression
+    z : ndarray, shape (rows, d)
+        Scaled inputs of all rows of the emulator.
+    parts : ndarray of int, shape (rows,)
+    uniform : tuple of bool
+        Of each input.
+    """
+
+    def __init__(
+        self, regression: Regression, z: Floats, parts: NDArray[np.int64], uniform: tuple[bool, ...]
+    ):
+        self.regression, self._uniform = regression, uniform
+        rows = np.array(regression.rows)
+        self._z, self._parts = z[rows], parts[rows]
+        self._y = np.array(regression.values)
+        self._part = cache(self._prepared)
+        self.standard_errors = np.array(regression.errors) / np.array(regression.deviations)
+
+    def _prepared(self, part: int) -> Predict:
+        """Return the prediction from all rows (-1), or from those of all parts but one."""
+        of = self.regression
+        fit, kept = (
+            (of.fit, self._parts >= 0) if part < 0 else (of.folds[part], self._parts != part)
+        )
+        return _KINDS[of.kind][1](fit, self._z[kept], self._y[kept], self._uniform)
+
+    def __call__(self, z: Floats) -> tuple[Floats, Floats]:
+        """Return means, and standard deviations up to a factor, shape (n,) each."""
+        mean, sd = self._part(-1)(z)
+        return self.regression.mean + self.regression.sd * mean, self.regression.sd * sd
+
+    def cross_fitted(self, z: Floats, parts: NDArray[np.int64]) -> Floats:
+        """Return means, each from the rows of all parts but that of the row, shape (n,)."""
+        mean = np.empty(len(z))
+        for part in np.unique(parts):
+            mean[parts == part] = self._part(int(part))(z[parts == part])[0]
+        return self.regression.mean + self.regression.sd * mean
+
+
+def regress(
+    z: Floats,
+    y: Floats,
+    rows: NDArray[np.int64],
+    parts: NDArray[np.int64],
+    uniform: tuple[bool, ...],
+) -> Regression:
+    """Return the kind of regression that predicts parts of the rows best from the others.
+
+    Parameters
+    ----------
+    z : ndarray, shape (n, d)
+        Scaled inputs.
+    y : ndarray, shape (n,)
+        Not constant.
+    rows : ndarray of int, shape (n,)
+        Positions among the rows of the emulator.
+    parts : ndarray of int, shape (n,)
+        Part of each row.
+    uniform : tuple of bool
+    """
+    mean, sd = float(y.mean()), float(y.std())
+    t = (y - mean) / sd
+    candidates = list[tuple[float, Regression]]()
+    for kind, (fit, prediction) in _KINDS.items():
+        if kind == PROCESS and len(t) > MOST_OF_PROCESS:
+            continue
+        folds, errors = list[dict[str, Any]](), np.zeros(len(t))
+        deviations = np.ones(len(t))
+        for part in range(FOLDS):
+            others, these = parts != part, parts == part
+            folds.append(fit(z[others], t[others], uniform))
+            if these.any():
+                predict = prediction(folds[-1], z[others], t[others], uniform)
+                predicted, deviations[these] = predict(z[these])
+                errors[these] = t[these] - predicted
+        crossed = folds, errors.tolist(), deviations.tolist()
+        regression = Regression(kind, rows.tolist(), t.tolist(), mean, sd, {}, *crossed)
+        candidates.append((regression.q2, regression))
+    best = max(candidates, key=lambda candidate: candidate[0])[1]
+    return best._replace(fit=_KINDS[best.kind][0](z, t, uniform))
