@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.assess.row_inputs import correlated_inputs, independent_inputs
+from uq.assess.row_inputs import correlated_inputs, independent_inputs, scores_of_inputs
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.indices.method import DesignSample
@@ -82,6 +82,7 @@ def sample_of(result: Result) -> DesignSample:
     nothing = np.full(len(result), np.nan)
     sample = DesignSample.plain(nothing, independent_inputs(result), random=result.is_random)
     if layout is PLAIN:
+        sample = replace(sample, normal=scores_of_inputs(result))
         if result.has_independent_samples:
             return sample
         return replace(sample, dependence=Dependence(result.dataset["replicate"].values))

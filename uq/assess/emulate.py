@@ -28,9 +28,9 @@ from uq.machines.emulator import (
     parts_of,
     text_of,
 )
-from uq.machines.regressions import Regression, openturns, regress, scale_of
 from uq.result.elements import flags
 from uq.result.result import AnyResult, Result
+from uq.stats.regressions import PROCESS, Regression, openturns, regress, scale_of
 from uq.study.definition import study_from_text
 from uq.study.installed_models import SUFFIX, find_model
 from uq.study.provenance import __version__
@@ -290,7 +290,7 @@ def _classifier(
     regressions, scores = list[Regression](), list[Floats]()
     for code in range(count if count > 2 else count - 1):
         indicator = 1.0 * (codes == code)
-        regression = regress(z, indicator, rows, parts, uniform)
+        regression = regress(z, indicator, rows, parts, uniform, (PROCESS,))
         regressions.append(regression)
         scores.append(indicator - regression.sd * np.array(regression.errors))
     if not scores:

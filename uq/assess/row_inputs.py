@@ -1,8 +1,9 @@
 """Values of the inputs in each row, with their laws and dependence."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 
 import numpy as np
@@ -55,8 +56,13 @@ class Inputs:
 
     def normal(self, name: str) -> Floats:
         """Return the standard normal variables behind the values of a parameter."""
-        share = cdf_within(self.laws[name], self.values[name], self.bounds[name])
-        return np.asarray(special.ndtri(np.clip(share, 2.0**-54, 1 - 2.0**-53)))
+        return normal_scores(self.values[name], self.laws[name], self.bounds[name])
+
+
+def normal_scores(values: Floats, law: Law, bounds: tuple[float, float]) -> Floats:
+    """Return the standard normal variables behind values of a law within bounds."""
+    share = cdf_within(law, values, bounds)
+    return np.asarray(special.ndtri(np.clip(share, 2.0**-54, 1 - 2.0**-53)))
 
 
 def inputs_of(rows: Result, study: StudyFile | None = None, text: str = "") -> Inputs:
@@ -115,6 +121,26 @@ def independent_inputs(result: Result) -> dict[str, Floats]:
         if law.times is None
         else factor_of(law, result.dataset[name].values, result.dataset[law.times].values)
         for name, law in laws_of(result.dataset.attrs["study"]).items()
+    }
+
+
+def scores_of_inputs(result: Result) -> dict[str, Callable[[Floats], Floats]]:
+    """Return functions of the values of `independent_inputs` that give their normal scores.
+
+    Returns
+    -------
+    dict of str to callable
+        Of inputs with a continuous law; empty if rows are imported.
+    """
+    if result.design.imported:
+        return {}
+    inputs = inputs_of(result)
+    return {
+        name: partial(
+            normal_scores, law=law, bounds=inputs.bounds[name] if law.times is None else EVERYWHERE
+        )
+        for name, law in inputs.laws.items()
+        if not law.discrete
     }
 
 

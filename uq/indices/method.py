@@ -53,6 +53,9 @@ class DesignSample:
         Whether the model's rows depend on their seeds.
     quantiles : dict of str to float
         Name -> probability of each quantile, for quantile-oriented indices.
+    normal : dict of str to callable
+        Input of a plain sample -> function of its values that returns the standard normal scores
+        behind them; only of inputs with a continuous law.
     confidence : float
         Confidence level of the intervals.
     nulls : bool
@@ -73,6 +76,7 @@ class DesignSample:
     matrix: Floats = field(default_factory=lambda: np.empty(0))
     random: bool = False
     quantiles: Mapping[str, float] = field(default_factory=dict)
+    normal: Mapping[str, Callable[[Floats], Floats]] = field(default_factory=dict)
     confidence: float = CONFIDENCE
     nulls: bool = True
     dependence: Dependence = INDEPENDENT

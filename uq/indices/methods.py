@@ -7,7 +7,7 @@ for designs that support it; tables, JSON, figures, reports and documentation sh
 from collections.abc import Mapping
 from functools import partial
 
-from uq.indices.expansions import EXPLAINED, fast_indices, hdmr_indices
+from uq.indices.expansions import EXPLAINED, chaos_indices, fast_indices, hdmr_indices
 from uq.indices.first_order import first_order_indices
 from uq.indices.given_data import (
     MIN_ROWS,
@@ -76,6 +76,16 @@ METHODS = {
         kinds=(S1, ST, SHAPLEY, S2),
         source="polynomials in one and in two inputs (Li et al. 2010); refused where they explain"
         f" less than {100 * EXPLAINED:g} % of rows held out",
+    ),
+    "chaos": SensitivityMethod(
+        "share of the variance, alone, in pairs and in total, from few rows of a smooth output",
+        PLAIN,
+        chaos_indices,
+        (S1, ST, SHAPLEY, S2),
+        source="sparse polynomial chaos (Sudret 2008) by OpenTURNS, corrected by rows left out",
+        intervals="Student's t of rows left out, and the share that is not explained",
+        least=MIN_ROWS,
+        most_rows=1000,
     ),
     "quantile": _of_any_inputs(
         "which inputs move a quantile, or B10 of a life",

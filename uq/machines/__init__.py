@@ -16,6 +16,5 @@ Reading order; each part imports only those above it:
     program_outputs  outputs of a program
     fmu              an FMU as a machine: each row simulates a separate instance
     program          program as a machine: each row is computed in a separate folder
-    regressions      regressions of an output on inputs, by OpenTURNS
     emulator         an emulator as a machine: outputs predicted by regressions
 """

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import (
-    ROW_NAME,
     Floats,
     Mask,
     Model,
@@ -24,9 +23,9 @@ from uq.contract import (
 )
 from uq.errors import InputError
 from uq.files.whole_files import file_there
-from uq.machines.regressions import FOLDS, Predictor, Regression, Scale
 from uq.machines.row_by_row import NoSettings
 from uq.sampling.unit_cube import hashed, uniform
+from uq.stats.regressions import FOLDS, Predictor, Regression, Scale
 from uq.text.numbers import number
 
 FORMAT = 1
@@ -398,7 +397,7 @@ def model_of_emulator(
         refusal=refusal,
         random=not cross_fitted,
         dimensions=origin.dimensions if origin else {},
-        row_name=origin.row_name if origin else ROW_NAME,
+        row_name=("prediction", "predictions"),
     )
 
 

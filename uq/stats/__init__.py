@@ -18,6 +18,7 @@ Reading order; each part imports only those above it:
     tails                 tail index of an output, which determines the moments that exist
     uncertainty_exponent  uncertainty exponent of a basin boundary
     variance_components   variance components of nested rows
+    regressions           regressions on inputs by OpenTURNS: polynomial chaos, Gaussian process
     importance_weights    pareto-smoothed importance weights and their reliability diagnostics
     moments               mean and standard deviation with confidence intervals
     weighted_means        weighted means of numbers between 0 and 1, with confidence intervals

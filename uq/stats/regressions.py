@@ -24,6 +24,7 @@ MOST_OF_PROCESS = 600
 """Largest number of rows of a Gaussian process, whose cost grows with their cube."""
 
 _FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estimated
+_DEGREE = 16
 _ROWS_PER_TERM = (4.0, 2.0, 1.0, 0.5)  # among which terms are selected
 _RATIO = 3.0  # of largest to smallest value from which logarithms may be used
 _FLAT = -0.8  # excess kurtosis below which a column counts as uniform; -1.2 of a uniform law
@@ -82,7 +83,7 @@ def scale_of(name: str, values: Floats) -> Scale:
     logarithmic = bool(
         values.min() > 0
         and values.max() > _RATIO * values.min()
-        and abs(skew(np.log(values))) < abs(skew(values))
+        and abs(float(skew(np.log(values)))) < abs(float(skew(values)))
     )
     column = np.log(values) if logarithmic else values
     uniform = bool(kurtosis(column) < _FLAT)
@@ -121,13 +122,17 @@ def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> dict[str, Any]
     basis = _basis(uniform)
     laws = [ot.Uniform(-1.0, 1.0) if flat else ot.Normal() for flat in uniform]
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
-    results = []
-    for rows_per_term in _ROWS_PER_TERM:
+    results, most = [], 0
+    for degree in range(1, _DEGREE + 1):
+        if most < MOST_TERMS:  # to count the polynomials of many inputs takes minutes
+            most = basis.getEnumerateFunction().getBasisSizeFromTotalDegree(degree)
+    most = min(most, MOST_TERMS)
+    for size in sorted({min(most, int(len(y) / few)) for few in _ROWS_PER_TERM}):
         algorithm = ot.FunctionalChaosAlgorithm(
             ot.Sample(z),
             ot.Sample(y[:, None]),
             ot.JointDistribution(laws),
-            ot.FixedStrategy(basis, min(MOST_TERMS, int(len(y) / rows_per_term))),
+            ot.FixedStrategy(basis, size),
             ot.LeastSquaresStrategy(selection),
         )
         algorithm.run()
@@ -137,6 +142,35 @@ def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> dict[str, Any]
         "terms": [int(i) for i in result.getIndices()],
         "coefficients": [float(c) for c in np.array(result.getCoefficients())[:, 0]],
     }
+
+
+def components(
+    fit: Mapping[str, Any], z: Floats, uniform: tuple[bool, ...]
+) -> dict[tuple[int, ...], tuple[float, Floats]]:
+    """Return the parts of an expansion that depend on the same inputs, as in an ANOVA.
+
+    Parameters
+    ----------
+    fit : dict
+        From `fit_chaos`.
+    z : ndarray, shape (n, d)
+    uniform : tuple of bool
+
+    Returns
+    -------
+    dict of tuple of int to (float, ndarray of shape (n,))
+        Positions of the inputs -> variance of the part, and its values.
+    """
+    ot = openturns()
+    basis = _basis(uniform)
+    parts: dict[tuple[int, ...], tuple[float, Floats]] = {}
+    for term, coefficient in zip(fit["terms"], fit["coefficients"], strict=True):
+        powers = np.array(basis.getEnumerateFunction()(term))
+        inputs = tuple(np.flatnonzero(powers).tolist())
+        values = coefficient * np.array(basis.build(term)(ot.Sample(z)))[:, 0]
+        variance, before = parts.get(inputs, (0.0, 0.0))
+        parts[inputs] = (variance + coefficient**2 * bool(inputs), before + values)
+    return parts
 
 
 def _chaos(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
@@ -297,6 +331,7 @@ def regress(
     rows: NDArray[np.int64],
     parts: NDArray[np.int64],
     uniform: tuple[bool, ...],
+    kinds: tuple[str, ...] = (CHAOS, PROCESS),
 ) -> Regression:
     """Return the kind of regression that predicts parts of the rows best from the others.
 
@@ -311,13 +346,14 @@ def regress(
     parts : ndarray of int, shape (n,)
         Part of each row.
     uniform : tuple of bool
+    kinds : tuple of str
+        A Gaussian process is left out where there are too many rows.
     """
     mean, sd = float(y.mean()), float(y.std())
     t = (y - mean) / sd
     candidates = list[tuple[float, Regression]]()
-    for kind, (fit, prediction) in _KINDS.items():
-        if kind == PROCESS and len(t) > MOST_OF_PROCESS:
-            continue
+    for kind in kinds if len(t) <= MOST_OF_PROCESS else (CHAOS,):
+        fit, prediction = _KINDS[kind]
         folds, errors = list[dict[str, Any]](), np.zeros(len(t))
         deviations = np.ones(len(t))
         for part in range(FOLDS):

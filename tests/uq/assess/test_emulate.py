@@ -1,0 +1,195 @@
+"""Emulators: what they predict, what they refuse, and that their errors are carried on."""
+
+import json
+
+import numpy as np
+import pytest
+from computed import UNIFORM, computed, kinds, linear, study_of
+
+import uq as api
+from uq.contract import Status
+from uq.errors import InputError
+from uq.machines.emulator import EmulatedRows, emulator_at, parts_of
+from uq.study.installed_models import model_at
+
+PAIRED, SIGNS = "sample_models:PAIRED", {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
+
+
+def ishigami(samples=200, seed=1, **analysis):
+    return computed(
+        study_of(
+            {
+                "study": {"name": "waves", "model": "ishigami"},
+                "design": {"method": "monte-carlo", "samples": samples, "seed": seed},
+                "uncertain": dict.fromkeys(("x1", "x2", "x3"), SIGNS),
+                "analysis": {"thresholds": {"y": 10.0}} | analysis,
+            }
+        )
+    )
+
+
+@pytest.fixture(scope="module")
+def waves(tmp_path_factory):
+    """Return the file of an emulator of Ishigami's function from 200 rows."""
+    path = tmp_path_factory.mktemp("emulators") / "waves.emulator"
+    api.emulate(ishigami(), path)
+    return path
+
+
+def predicted(path, x, seed=0):
+    """Return the columns, status and messages of rows of an emulator."""
+    seeds = np.arange(seed, seed + len(x), dtype=np.uint64) * np.uint64(2**40)
+    model = model_at(str(path))
+    return model.batch(x, seeds, model.settings())
+
+
+def test_new_rows_are_predicted_with_the_error_that_is_stated(waves):
+    new = ishigami(2000, seed=2)
+    x = np.column_stack([new[name] for name in ("x1", "x2", "x3")])
+    y = predicted(waves, x)[0]["y"]
+    stated = emulator_at(waves).elements["y"][0].regression.error_sd
+    true = np.sqrt(np.mean((y - new["y"].values) ** 2))
+    # An error is drawn and an error is made: their squares add up.
+    assert 0.3 * stated < true < 2 * np.sqrt(2) * stated < 0.3 * float(new["y"].std())
+
+
+def test_rows_have_the_same_bits_one_by_one_and_in_another_process(waves, tmp_path):
+    x = np.random.default_rng(0).uniform(-3, 3, (64, 3))
+    together = predicted(waves, x)[0]["y"]
+    assert np.array_equal(
+        together, [predicted(waves, x[i : i + 1], i)[0]["y"][0] for i in range(64)]
+    )
+    study = tmp_path / "again.toml"
+    text = ishigami().attrs["study"].replace("samples = 200", "samples = 300")
+    study.write_text(text)
+    results = [
+        api.run(api.load_study(study, str(waves)), tmp_path / f"{n}.nc", workers=n, chunk_rows=c)
+        for n, c in ((0, 300), (2, 7))
+    ]
+    assert np.array_equal(results[0]["y"], results[1]["y"])
+    assert results[0].attrs["model"] == "ishigami-emulator"
+
+
+def test_an_output_that_jumps_is_refused():
+    ds = ishigami()
+    for height in (3.0, 10.0):
+        jump = ds.assign(y=ds["y"] * 0.1 + ds["x1"] + height * (ds["x2"] > ds["x3"] ** 2))
+        jump["y"].attrs = ds["y"].attrs
+        with pytest.raises(InputError, match="y: no emulator: "):
+            api.emulate(jump)
+
+
+def paired(samples=120):
+    tables = {
+        "study": {"name": "paired", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": samples},
+        "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
+    }
+    return computed(study_of(tables, PAIRED))
+
+
+def test_noise_alone_is_refused_and_the_rest_is_kept():
+    emulator = api.emulate(paired(300), outputs=["far", "same"])
+    assert list(emulator.elements) == ["same"]
+    assert "of the standard deviation of the output; a third is the most" in emulator.refused["far"]
+
+
+def test_lives_regimes_and_undefined_values_are_classified():
+    rows = kinds(samples=400)
+    emulator = api.emulate(rows, outputs=["life", "angle", "regime"])
+    assert not emulator.refused
+    new = kinds(samples=1000)
+    x = np.column_stack([new["x1"], new["x2"]])[400:]
+    batch = EmulatedRows(emulator, ("x1", "x2"))
+    columns, status, _ = batch(x, np.arange(600, dtype=np.uint64) * np.uint64(2**40), None)
+    assert (status == Status.OK).all()
+    truth = new.isel(row=slice(400, None))
+    assert np.mean(np.isposinf(columns["life"]) == np.isposinf(truth["life"].values)) > 0.95
+    assert np.mean(columns["life_censored"] == truth["life_censored"].values) > 0.93
+    assert np.mean(columns["regime"] == truth["regime"].values) > 0.95
+    assert np.mean(np.isnan(columns["angle"]) == np.isnan(truth["angle"].values)) > 0.95
+    ended = np.isfinite(columns["life"]) & np.isfinite(truth["life"].values)
+    ended &= ~columns["life_censored"] & (truth["life_censored"].values == 0)
+    assert columns["life"][ended] == pytest.approx(truth["life"].values[ended], rel=0.02)
+
+
+def test_rows_outside_those_learnt_fail_with_a_sentence(waves):
+    x = np.array([[0.0, 0.0, 0.0], [0.0, 9.0, 0.0], [np.nan, 0.0, 0.0]])
+    columns, status, messages = predicted(waves, x)
+    assert status.tolist() == [Status.OK, Status.RAISED, Status.RAISED]
+    assert messages[1] == "x2 = 9 is far outside the rows of the emulator"
+    assert np.isfinite(columns["y"][0]) and np.isnan(columns["y"][1:]).all()
+
+
+def test_other_constants_and_settings_are_refused(waves, tmp_path, uq):
+    series = {
+        "study": {"name": "series", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 60},
+        "uncertain": {"x1": UNIFORM},
+        "fixed": {"x2": 0.5},
+    }
+    path = tmp_path / "series.emulator"
+    api.emulate(computed(study_of(series, "sample_models:SERIES")), path)
+    for change, words in (
+        ({"fixed": {"x2": 0.6}}, "x2 = 0.6: the rows of the emulator were computed with 0.5"),
+        ({"uncertain": {"x1": UNIFORM, "x2": UNIFORM}, "fixed": {}}, "does not vary in the rows"),
+    ):
+        with pytest.raises(InputError, match=words):
+            study_of(series | change, str(path))
+    assert study_of(series, str(path)).model.name == "series-emulator"
+
+
+@pytest.mark.slow
+def test_the_twin_is_unbiased_and_covers_for_what_it_is_worth(tmp_path):
+    """Of 40 designs; means of Ishigami's function are 3.5, and P(y > 10) is 0.0336."""
+    path, inside, widths = tmp_path / "w.emulator", [], []
+    for seed in range(40):
+        ds = ishigami(100, seed)
+        api.emulate(ds, path)
+        line = api.two_fidelities(ds, emulator=path).loc[("y", "mean")]
+        inside.append(line["low"] <= 3.5 <= line["high"])
+        widths.append((line["high"] - line["low"]) / (line["plain_high"] - line["plain_low"]))
+    assert sum(inside) >= 34  # of 40 at 95 %: fewer than 34 once in 300
+    assert np.median(widths) < 0.5
+
+
+def test_parts_depend_on_the_row_alone():
+    x = np.random.default_rng(3).random((200, 2))
+    assert np.array_equal(parts_of(x)[::-1], parts_of(np.ascontiguousarray(x[::-1])))
+    assert np.bincount(parts_of(x)).min() > 20
+
+
+def test_the_command_shows_errors_and_json(uq, tmp_path, write_study):
+    path = write_study("linear", uncertain=("x1", "x2", "x3", "x4"), law='distribution="uniform",'
+                       "lower=0.0, upper=1.0", samples=60)  # fmt: skip
+    uq("run", path, "-o", "out.nc", "--quiet")
+    ended = uq("emulate", "out.nc", "-o", "out.emulator")
+    assert ended.code == 0 and "polynomial-chaos" in ended.out, ended.err
+    document = json.loads(uq("emulate", "out.nc", "-o", "out.emulator", "--json").out)
+    output = document["outputs"]["y"]
+    assert output["kind"] == "polynomial-chaos" and output["refused"] is False
+    assert output["q2"] > 0.999 and output["error_sd"] < 0.05
+    ended = uq("run", path, "--model", "out.emulator", "-o", "many.nc", "--samples", 500)
+    assert ended.code == 0 and "500 predictions" in ended.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("none.nc", "-o", "a.emulator"), "none.nc: no such file"),
+        (("out.nc", "-o", "a.nc"), "a.nc: the file of an emulator ends in .emulator"),
+        (("out.nc", "-o", "a.emulator", "--output", "z"), "no such output 'z'"),
+    ],
+)
+def test_mistakes_are_one_line(uq, write_study, arguments, words):
+    linear(samples=64).to_netcdf("out.nc") if arguments[0] == "out.nc" else None
+    ended = uq("emulate", *arguments)
+    assert ended.code == 2 and words in ended.err and ended.err.count("\n") == 1
+
+
+def test_a_file_that_is_none_is_one_line(tmp_path):
+    for text in ("", "{}", '{"vibrolife_emulator": 1}', "[1]"):
+        path = tmp_path / "bad.emulator"
+        path.write_text(text)
+        with pytest.raises(InputError, match="bad.emulator: is not an emulator"):
+            model_at(str(path))
