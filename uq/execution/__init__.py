@@ -16,6 +16,7 @@ Reading order; each part imports only those above it:
     workers         dask workers, local or on a cluster
     loading         load studies and models, and run one row of a model
     clusters        dask workers of this computer, or of an existing cluster
+    queues          rows computed by the jobs of a queueing system
     recomputed_row  recomputation of a stored row, and its comparison with the stored values
     recomputed_result  a result computed again from what its rows have kept
     executor        rows of one run

@@ -17,6 +17,7 @@ from uq.execution.options import DEFAULTS, Progress, RunOptions
 from uq.execution.tally import MemoryStore, row_bytes
 from uq.files.interrupts import in_background, undone
 from uq.machines.compilation import compilation
+from uq.machines.queue_table import QueueTable
 from uq.machines.row_by_row import RowByRow
 from uq.result.workload import Workload
 from uq.study.evaluate import Chunk, KernelError, evaluate
@@ -156,10 +157,11 @@ class Dispatcher:
         self._dashboard = crew.dashboard
         while self.left:
             threads = crew.threads
-            sharing = max(1, threads)
+            sharing = max(1, threads, crew.jobs.most if crew.jobs else 0)
             # Only as many chunks are sent as keep the workers busy.
             while self._untaken and len(crew) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
-                crew.send(*self._take(self._shared(sharing)))
+                size = crew.jobs.chunk_rows if crew.jobs else self._shared(sharing)
+                crew.send(*self._take(size))
             before, self._under_way = self._under_way, self._at_once(crew.begun(threads))
             if self._under_way and not before:
                 self.report_progress()  # the first row may take minutes
@@ -293,7 +295,8 @@ class Executor:
             self._stack.enter_context(compilation(self._compiling))
         else:
             self._stack.enter_context(undone(self._children.close))
-            self._begin(1)
+            if not self._queue:
+                self._begin(1)
         return self
 
     def __exit__(self, *exception: object) -> None:
@@ -317,6 +320,10 @@ class Executor:
             dispatcher.begin_here(_SHARE_HERE)
             dispatcher.finish_on(crew)
             return
+        if self._queue:  # none here: submitting computers are for little work
+            if dispatcher.left:
+                dispatcher.finish_on(self._started(dispatcher))
+            return
         begun = not workers and self._crew is None
         if begun:
             dispatcher.begin_here(share=1)
@@ -338,6 +345,11 @@ class Executor:
                 from uq.execution.clusters import remote_workers
 
                 crew = remote_workers(self._options.scheduler, *how)
+            elif self._queue:
+                from uq.execution.queues import queued_workers
+
+                jobs = self._options.workers or self._queue.jobs
+                crew = queued_workers(self._queue, jobs, *how, self._options.say)
             else:
                 count = processes(dispatcher.workload, self._options.workers)
                 self._begin(count)  # they import while dask does
@@ -346,6 +358,13 @@ class Executor:
                 crew = local_workers(count, self._children, *how)
             self._crew = self._stack.enter_context(crew)
         return self._crew
+
+    @property
+    def _queue(self) -> QueueTable | None:
+        """The jobs that the model asks for, unless the user asks for other workers."""
+        batch, options = self._workload.model.batch, self._options
+        elsewhere = options.scheduler is not None or options.workers == 0
+        return None if elsewhere or not isinstance(batch, RowByRow) else batch.queue
 
     @cached_property
     def _spec(self) -> ModelSpec:

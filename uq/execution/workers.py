@@ -11,14 +11,15 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from itertools import islice
-from typing import Any
+from typing import Any, NamedTuple
+from uuid import uuid4
 
 from distributed import Client, Future, KilledWorker, as_completed
 from distributed.utils import silence_logging_cmgr
 
 from uq.contract import Status
 from uq.errors import InputError, RunError, one_line
-from uq.execution.dask_task import evaluate_rows
+from uq.execution.dask_task import evaluate_in_job, evaluate_rows
 from uq.execution.isolation import TRIES, spec_of
 from uq.result.workload import Workload
 from uq.study.evaluate import Chunk, RowFailure, lost_rows
@@ -33,6 +34,27 @@ _Sent = tuple[int, Rows, int]
 
 Returned = tuple[int, Rows, Chunk, float]
 """Number of the first row, the rows, their outputs, and their cost [s], 0 if unknown."""
+
+
+class Jobs(NamedTuple):
+    """Jobs of a queueing system: each is a worker that computes one chunk and ends.
+
+    Attributes
+    ----------
+    most : int
+        At the same time.
+    chunk_rows : int
+        Rows in a chunk.
+    keep_up : callable
+        Called regularly with the number of chunks that have not returned: submits jobs for them.
+    death : str
+        What is said of a row whose jobs died.
+    """
+
+    most: int
+    chunk_rows: int
+    keep_up: Callable[[int], object]
+    death: str
 
 
 class Workers:
@@ -51,6 +73,14 @@ class Workers:
     run : str
         Whose processes compute, as in `uq.execution.dask_task.evaluate_rows`; "" on an existing
         cluster.
+    jobs : Jobs, optional
+        In which the workers run.
+
+    Attributes
+    ----------
+    jobs : Jobs or None
+    given_up : int
+        Rows whose workers died too often.
     """
 
     def __init__(
@@ -60,7 +90,10 @@ class Workers:
         row_limit: float | None = None,
         watch: Callable[[int, bool], None] = lambda *_: None,
         run: str = "",
+        jobs: Jobs | None = None,
     ) -> None:
+        self.jobs = jobs
+        self.given_up = 0
         self._client = client
         self._workload = workload
         self._spec = spec_of(workload)
@@ -113,7 +146,15 @@ class Workers:
         """Submit rows for computation."""
         how = self._spec, versions(), self._row_limit
         data = rows.x, rows.seed, start, self._run
-        future = self._client.submit(evaluate_rows, *how, *data, pure=False)
+        if self.jobs:
+            from dask._task_spec import Task
+
+            # A producer of data waits for a worker that is free, never behind other rows.
+            key = f"{evaluate_in_job.__name__}-{uuid4()}"
+            task = Task(key, evaluate_in_job, *how, *data, _data_producer=True)
+            future = self._client.get({key: task}, key, sync=False)
+        else:
+            future = self._client.submit(evaluate_rows, *how, *data, pure=False)
         self._under_way[future] = start, rows, tries
         self._arrivals.add(future)
 
@@ -141,6 +182,8 @@ class Workers:
             else:
                 self._unsent.append(sent)
         self._watch(self.threads, bool(back))
+        if self.jobs:
+            self.jobs.keep_up(min(len(self), self.jobs.most))
         if self._unsent and self._is_connected():
             again, self._unsent = self._unsent, []
             for sent in again:
@@ -155,7 +198,9 @@ class Workers:
             raise error
         if isinstance(error, KilledWorker):
             if count == 1:
-                fault = RowFailure(Status.CRASHED, "killed every worker that computed it")
+                death = self.jobs.death if self.jobs else "killed every worker that computed it"
+                fault = RowFailure(Status.CRASHED, death)
+                self.given_up += 1
                 lost = lost_rows(self._workload.model, self._workload.settings, 1, fault, start)
                 return [(start, rows, lost, 0.0)]
             half = count // 2

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Output, Parameter, Status, censored_name, high_name
 from uq.errors import InputError, described
+from uq.machines.queue_table import QueueTable
 from uq.machines.returned import Returned, RowError, checked, dimensions
 from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import unknown
@@ -168,6 +169,8 @@ class RowByRow:
         seed if it is wanted; returns the folder in which its files are kept, or None.
     loads_first : bool
         Whether its first row may take longer than others, as it imports or compiles something.
+    queue : QueueTable or None
+        Jobs of a cluster that compute the rows, unless a run asks for other workers.
     """
 
     function: Callable[..., Any]
@@ -177,6 +180,7 @@ class RowByRow:
     leave: Callable[[], object] = lambda: None
     keep: Callable[[list[float | int]], Path | None] = lambda numbers: None
     loads_first: bool = True
+    queue: QueueTable | None = None
 
     @property
     def stops_rows(self) -> bool:
