@@ -3,7 +3,7 @@
 import re
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator
 
 from uq.sampling.input_faults import unknown
 
@@ -12,7 +12,15 @@ SYSTEMS = ("slurm", "pbs", "lsf")
 
 _MEMORY = re.compile(r"\d+(\.\d+)? ?[kMGT]i?B")
 _WALLTIME = re.compile(r"(?!0+:00:00)\d{1,4}:[0-5]\d:[0-5]\d")
-_Line = Annotated[str, Field(pattern=r"^[^\n\r]*$")]
+
+
+def _one_line(text: str) -> str:
+    if not text.isprintable():
+        raise ValueError("must be one line of printed characters")
+    return text
+
+
+_Line = Annotated[str, AfterValidator(_one_line)]
 Count = Annotated[int, Field(ge=1)]
 
 

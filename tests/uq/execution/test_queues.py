@@ -4,14 +4,20 @@ computer, each computed once.
 
 import os
 import random
+import sys
+from pathlib import Path
 
+import dask
 import pytest
 from fake_slurm import FakeSlurm
 from own_study import own_study
 
 import uq as package
 from uq.contract import Status
+from uq.errors import InputError, RunError
 from uq.execution import queues
+from uq.machines.machine_file import content_of
+from uq.machines.queue_table import QueueTable
 
 pytest.importorskip("dask_jobqueue")
 
@@ -97,3 +103,155 @@ def test_200_jobs_with_30_faults(slurm):
     queue = slurm(plan, samples=176)
     check(queue, plan, run(workers=8))
     assert queue.submitted == 200
+
+
+def test_an_interrupted_run_cancels_its_jobs_and_resumes(slurm):
+    queue = slurm(machine=MACHINE + "rows_per_job = 2\n", samples=8)
+
+    def interrupt(progress):
+        if progress.done >= 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(workers=2, progress=interrupt)
+    assert not queue.alive
+    reused = []
+    ds = run(workers=2, progress=lambda progress: reused.append(progress.reused))
+    assert 2 <= reused[0] < 8 and not queue.alive
+    assert ds.identical(computed_here(queue))
+
+
+def test_a_row_whose_jobs_die_is_marked_and_says_so(slurm, folder):
+    queue = slurm({1: "kill-row"}, samples=2)
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}):
+        ds = run(workers=1)
+    assert sorted(ds["status"].values) == [Status.OK, Status.CRASHED]
+    sentence = ds["status"].attrs["example_crashed"]
+    assert "its job died each time: killed, or at its walltime 00:10:00; see" in sentence
+    logs = Path(sentence.rpartition("; see ")[2])
+    assert "Registered to" in (logs / "uq-pad-1.out").read_text()
+    assert logs.stat().st_mode & 0o077 == 0 and not queue.alive
+
+
+WHERE = r'machine.toml: \[queue\] system = "slurm": '
+
+
+def test_a_queue_that_refuses_all_jobs_ends_the_run(slurm):
+    slurm(dict.fromkeys(range(1, 9), "refuse"))
+    refusal = "'sbatch' refuses jobs: sbatch: error: QOSMaxSubmitJobPerUserLimit$"
+    with pytest.raises(RunError, match=WHERE + refusal):
+        run(workers=2)
+
+
+def test_a_queue_that_refuses_further_jobs_is_said_once(slurm):
+    queue = slurm(dict.fromkeys(range(2, 6), "refuse"), samples=3)
+    lines = []
+    run(workers=2, say=lines.append)
+    assert len([line for line in lines if "refuses more jobs for now: sbatch: error" in line]) == 1
+    assert len(queue.rows) == 3
+
+
+def test_a_queue_that_loses_all_jobs_ends_the_run(slurm, monkeypatch):
+    monkeypatch.setattr(queues, "_LOOK_SECONDS", 0.1)
+    slurm(dict.fromkeys(range(1, 31), "lose"))
+    wasted = "10 jobs in succession ended before they could compute; their output is in "
+    with pytest.raises(RunError, match=WHERE + wasted):
+        run(workers=2)
+
+
+def test_what_is_missing_for_a_queue_is_one_line(slurm, monkeypatch):
+    slurm()
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "dask_jobqueue", None)
+        with pytest.raises(InputError, match=WHERE[:-2] + r" needs .* 'vibrolife\[queue\]'$"):
+            run(workers=2)
+    monkeypatch.setenv("PATH", "/usr/bin:/bin")
+    with pytest.raises(InputError, match=WHERE + "'sbatch' is not on the PATH; run uq where"):
+        run(workers=2)
+
+
+MISTAKES = {
+    ('"slurm"', '"slrum"'): '[queue] system = "slrum": no such queueing system; did you mean '
+    "'slurm'? (allowed: slurm, pbs, lsf)",
+    ('"1GB"', '"1"'): '[queue] memory = "1": must be a number with kB, MB, GB or TB',
+    ('"1GB"', "1"): "[queue] memory = 1: must be a number with kB, MB, GB or TB",
+    ('"00:10:00"', '"10 min"'): '[queue] walltime = "10 min": must be hours, minutes and seconds',
+    ('"00:10:00"', "00:10:00"): "[queue] walltime = 00:10:00: must be hours, minutes",
+    ('"00:10:00"', '"00:00:00"'): "must be hours, minutes and seconds, in quotes",
+    ("cores = 2", "cores = 0"): "[queue] cores = 0: must be at least 1",
+    ("cores = 2", "core = 2"): "[queue] core = 2: no such key; did you mean 'cores'?",
+    ('walltime = "00:10:00"', ""): "[queue] walltime: is missing",
+    ("cores = 2", 'partition = "a\\nb"'): '[queue] partition = "a\\nb": must be one line',
+    ("[queue]", "[queues]"): "[queues]: no such table; did you mean 'queue'?",
+}
+
+
+@pytest.mark.parametrize("change", MISTAKES)
+def test_a_mistake_in_the_table_is_one_line(slurm, uq, change):
+    slurm(machine=MACHINE.replace(*change))
+    ended = uq("check", "own.toml", "--model", "machine.toml")
+    assert (ended.code, ended.out) == (2, "")
+    assert MISTAKES[change] in ended.err and ended.err.count("\n") == 1
+
+
+def test_where_rows_are_computed_is_no_code_of_the_machine(folder):
+    plain, table = MACHINE.split("[queue]")
+    path = folder / "machine.toml"
+    rest = '[parameters.depth]\nnominal = 1.0\ndirectives = [\n"a"]\n'
+    for first, last in ((plain, ""), (plain.strip(), ""), (plain, f"\n\n{rest}")):
+        path.write_text(f"{first}\n{last}")
+        bare = content_of(path)
+        path.write_text(f"{first}\n\n[queue]{table}{last}")
+        assert content_of(path) == bare
+
+
+TABLE = QueueTable(
+    system="slurm",
+    cores=8,
+    nodes=2,
+    memory="16GB",
+    walltime="02:00:30",
+    account="rods",
+    directives=["-X"],
+    prologue=["module load mpi"],
+)
+SCRIPTS = {
+    "slurm": [
+        "#SBATCH --cpus-per-task=8",
+        "#SBATCH --nodes=2",
+        "#SBATCH --ntasks-per-node=1",
+        "#SBATCH --mem=15G",
+        "#SBATCH -t 02:00:30",
+        "#SBATCH -A rods",
+        "#SBATCH -X",
+    ],
+    "pbs": [
+        "#PBS -l select=2:ncpus=8:mem=15259MB",
+        "#PBS -l walltime=02:00:30",
+        "#PBS -A rods",
+        "#PBS -X",
+    ],
+    "lsf": [
+        "#BSUB -n 16",
+        '#BSUB -R "span[ptile=8]"',
+        "#BSUB -W 121",
+        '#BSUB -P "rods"',
+        "#BSUB -X",
+    ],
+}
+
+
+@pytest.mark.parametrize("system", SCRIPTS)
+def test_a_job_asks_for_cores_and_nodes_and_has_one_row_at_a_time(system):
+    from dask_jobqueue.lsf import LSFJob
+    from dask_jobqueue.pbs import PBSJob
+    from dask_jobqueue.slurm import SLURMJob
+
+    kind = {"slurm": SLURMJob, "pbs": PBSJob, "lsf": LSFJob}[system]
+    options = queues.job_options(TABLE.model_copy(update={"system": system}))
+    script = kind("tcp://here:1", name="a", **options).job_script()
+    lines = script.splitlines()
+    assert set(SCRIPTS[system]) <= set(lines) and "module load mpi" in lines
+    assert "-n 1\n" not in script and "hosts=1" not in script
+    assert "--nthreads 1 --memory-limit 0 --no-dashboard" in lines[-1]
+    assert any(line.startswith("export OMP_NUM_THREADS=8 ") for line in lines)
