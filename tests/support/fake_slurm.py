@@ -7,7 +7,8 @@ queue is in the environment. A plan is a JSON object: number of a job -> what ha
     lose        it is accepted, and never heard of again
     late        it starts after seconds
     kill        it is killed when it starts, before a worker can connect
-    kill-row    it is killed in the middle of a row
+    kill-row    it is killed in the middle of a row, for which its program waits while there is a
+                file ``hold/NUMBER``
 """
 
 import fcntl
@@ -41,7 +42,7 @@ class FakeSlurm:
 
     def __init__(self, folder, plan):
         self.folder = folder
-        for name in ("bin", "alive", "begun", "done"):
+        for name in ("bin", "alive", "begun", "done", "hold"):
             (folder / name).mkdir(parents=True)
         (folder / "plan.json").write_text(json.dumps(plan))
         (folder / "number").write_text("0")
@@ -89,6 +90,8 @@ def _sbatch(folder, script):
     print(f"Submitted batch job {number}")
     if fault == "lose":
         return
+    if fault == "kill-row":
+        (folder / "hold" / str(number)).touch()
     job = folder / f"job-{number}.sh"
     shutil.copy(script, job)
     command = [sys.executable, __file__, "run", str(job), str(number), fault]
@@ -106,7 +109,8 @@ def _run(folder, job, number, fault):
     def end(*_):
         with suppress(AttributeError, psutil.NoSuchProcess):
             family = psutil.Process(process.pid).children(recursive=True)
-            for member in (*family, process):
+            os.killpg(process.pid, signal.SIGKILL)  # also what it is just starting
+            for member in family:
                 with suppress(psutil.NoSuchProcess):
                     member.kill()
             process.wait()
@@ -121,7 +125,9 @@ def _run(folder, job, number, fault):
     output = re.search(r"#SBATCH -o (\S+)", text)[1].replace("%J", number)
     with open(output, "wb") as log:
         environment = os.environ | {"SLURM_JOB_ID": number}
-        process = subprocess.Popen(["bash", job], stdout=log, stderr=log, env=environment)
+        process = subprocess.Popen(
+            ["bash", job], stdout=log, stderr=log, env=environment, start_new_session=True
+        )
     if fault == "kill":
         _note(folder, fault)
         end()

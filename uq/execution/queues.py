@@ -12,6 +12,7 @@ import asyncio
 import getpass
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -102,22 +103,31 @@ def queued_workers(
         cluster = stack.enter_context(kind(**options, job_name=f"uq-{workload.model.name}"))
         queue = _Queue(cluster, table.system, where, say)
         client = stack.enter_context(client_of(cluster))
-        stack.enter_context(undone(queue.end))
-        how = Jobs(jobs, table.rows_per_job, queue.keep_up, death)
-        crew = Workers(client, workload, row_limit, jobs=how)
+        crew = Workers(
+            client,
+            workload,
+            row_limit,
+            jobs=Jobs(jobs, table.rows_per_job, queue.keep_up, death),
+        )
+
+        def end() -> None:
+            queue.end()
+            if not (crew.given_up or queue.wasted):
+                shutil.rmtree(logs, ignore_errors=True)
+
+        stack.enter_context(undone(end))
         yield crew
-        stack.close()
-        if not crew.given_up:
-            shutil.rmtree(logs, ignore_errors=True)
 
 
 def _kind_of_cluster(system: str, where: str) -> Any:
     """Return the cluster of a queueing system whose commands are installed."""
+    on_interrupt = signal.getsignal(signal.SIGINT)
     try:
         import cryptography  # noqa: F401  (makes the certificates)
         import dask_jobqueue
     except ImportError:
         raise InputError(f"{where} needs dask-jobqueue: pip install 'vibrolife[queue]'") from None
+    signal.signal(signal.SIGINT, on_interrupt)  # which dask-jobqueue replaces
     kind: Any = getattr(dask_jobqueue, f"{system.upper()}Cluster")
     for command in (kind.job_cls.submit_command, _LISTINGS[system][0]):
         if not shutil.which(command):
@@ -175,6 +185,11 @@ class _Queue(SchedulerPlugin):
         The table of the machine file, for messages.
     say : callable
         Called with a line for the user.
+
+    Attributes
+    ----------
+    wasted : int
+        Jobs in succession that ended before they could compute.
     """
 
     def __init__(self, cluster: "JobQueueCluster", system: str, where: str, say: Say) -> None:
@@ -185,7 +200,7 @@ class _Queue(SchedulerPlugin):
         self._jobs: dict[str, Job] = {}  # that wait or run, by the name of their worker
         self._names: dict[str, str] = {}  # of workers, by address
         self._connected, self._ended = set[str](), set[str]()
-        self._number = self._wasted = self._refusals = 0
+        self._number = self.wasted = self._refusals = 0
         self._told = False  # that the queue refuses further jobs
         self._look = self._submit = 0.0  # times of the next ones
         self._submitting = asyncio.Lock()
@@ -196,7 +211,7 @@ class _Queue(SchedulerPlugin):
         """Note that the worker of a job has connected."""
         name = self._names[worker] = str(scheduler.workers[worker].name)
         self._connected.add(name)
-        self._wasted = 0
+        self.wasted = 0
 
     def remove_worker(self, scheduler: Any, worker: str, **how: Any) -> None:
         """Note that the worker of a job has left or died."""
@@ -231,10 +246,10 @@ class _Queue(SchedulerPlugin):
         lost = [name for name in waiting if self._jobs[name].job_id not in numbers]
         lost = [name for name in lost if name not in self._connected]  # meanwhile
         self._drop(lost)
-        self._wasted += len(lost)
-        if self._wasted >= _WASTED:
+        self.wasted += len(lost)
+        if self.wasted >= _WASTED:
             raise RunError(
-                f"{self._where}: {self._wasted} jobs in succession ended before they could compute;"
+                f"{self._where}: {self.wasted} jobs in succession ended before they could compute;"
                 f" their output is in {self._options['log_directory']}"
             )
 

@@ -112,7 +112,7 @@ class Workers:
     @property
     def dashboard(self) -> str:
         """Address of the dashboard of an existing cluster, or ""."""
-        if self._run:  # nothing is behind the address that dask reports
+        if self._run or self.jobs:  # nothing is behind the address that dask reports
             return ""
         try:
             return str(self._client.dashboard_link or "")
