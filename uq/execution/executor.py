@@ -17,7 +17,6 @@ from uq.execution.options import DEFAULTS, Progress, RunOptions
 from uq.execution.tally import MemoryStore, row_bytes
 from uq.files.interrupts import in_background, undone
 from uq.machines.compilation import compilation
-from uq.machines.queue_table import QueueTable
 from uq.machines.row_by_row import RowByRow
 from uq.result.workload import Workload
 from uq.study.evaluate import Chunk, KernelError, evaluate
@@ -25,6 +24,7 @@ from uq.study.row_sampling import Rows
 
 if TYPE_CHECKING:
     from uq.execution.workers import Workers
+    from uq.machines.queue_table import QueueTable
 
 
 CHUNK_SECONDS = 0.5
@@ -360,7 +360,7 @@ class Executor:
         return self._crew
 
     @property
-    def _queue(self) -> QueueTable | None:
+    def _queue(self) -> "QueueTable | None":
         """The jobs that the model asks for, unless the user asks for other workers."""
         batch, options = self._workload.model.batch, self._options
         elsewhere = options.scheduler is not None or options.workers == 0

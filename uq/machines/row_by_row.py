@@ -10,18 +10,20 @@ from dataclasses import dataclass, replace
 from inspect import isfunction
 from math import isfinite
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Model, Output, Parameter, Status, censored_name, high_name
 from uq.errors import InputError, described
-from uq.machines.queue_table import QueueTable
 from uq.machines.returned import Returned, RowError, checked, dimensions
 from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import unknown
 from uq.text.quantities import fault_of_unit, read_quantity
+
+if TYPE_CHECKING:
+    from uq.machines.queue_table import QueueTable
 
 _NO_PROPOSALS = StudyDefaults()
 
@@ -180,7 +182,7 @@ class RowByRow:
     leave: Callable[[], object] = lambda: None
     keep: Callable[[list[float | int]], Path | None] = lambda numbers: None
     loads_first: bool = True
-    queue: QueueTable | None = None
+    queue: "QueueTable | None" = None
 
     @property
     def stops_rows(self) -> bool:
