@@ -5,10 +5,12 @@ computer, each computed once.
 import gc
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import dask
@@ -213,6 +215,13 @@ def test_where_rows_are_computed_is_no_code_of_the_machine(folder):
         bare = content_of(path)
         path.write_text(f"{first}\n\n[queue]{table}{last}")
         assert content_of(path) == bare
+
+
+def test_the_page_shows_every_key():
+    page = (Path(package.__file__).parents[1] / "docs" / "clusters.md").read_text()
+    table = re.search(r"```toml\n.*?\n(\[queue\].*?)```", page, re.DOTALL)[1]
+    keys = tomllib.loads(table.replace("\n# ", "\n"))["queue"]
+    assert set(QueueTable.model_validate(keys).model_fields_set) == set(QueueTable.model_fields)
 
 
 TABLE = QueueTable(
