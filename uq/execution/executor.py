@@ -152,16 +152,15 @@ class Dispatcher:
         while self.left:
             self._here(self._good_chunk())
 
-    def finish_on(self, crew: "Workers") -> None:
-        """Run the remaining rows on workers."""
+    def finish_on(self, crew: "Workers", jobs: int = 0, size: int = 0) -> None:
+        """Run the remaining rows on workers, or in a number of jobs with chunks of a size."""
         self._dashboard = crew.dashboard
         while self.left:
             threads = crew.threads
-            sharing = max(1, threads, crew.jobs.most if crew.jobs else 0)
+            sharing = max(1, threads, jobs)
             # Only as many chunks are sent as keep the workers busy.
             while self._untaken and len(crew) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
-                size = crew.jobs.chunk_rows if crew.jobs else self._shared(sharing)
-                crew.send(*self._take(size))
+                crew.send(*self._take(size or self._shared(sharing)))
             before, self._under_way = self._under_way, self._at_once(crew.begun(threads))
             if self._under_way and not before:
                 self.report_progress()  # the first row may take minutes
@@ -320,9 +319,10 @@ class Executor:
             dispatcher.begin_here(_SHARE_HERE)
             dispatcher.finish_on(crew)
             return
-        if self._queue:  # none here: submitting computers are for little work
+        if queue := self._queue:  # no row here: others use the computer that submits, too
             if dispatcher.left:
-                dispatcher.finish_on(self._started(dispatcher))
+                crew = self._started(dispatcher)
+                dispatcher.finish_on(crew, workers or queue.jobs, queue.rows_per_job)
             return
         begun = not workers and self._crew is None
         if begun:

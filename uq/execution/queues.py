@@ -31,7 +31,7 @@ from uq.errors import InputError, RunError, one_line
 from uq.execution.clusters import client_of
 from uq.execution.environment import inherited
 from uq.execution.options import Say
-from uq.execution.workers import Jobs, Workers, quiet
+from uq.execution.workers import Workers, quiet
 from uq.files.interrupts import undone
 from uq.machines.queue_table import QueueTable
 from uq.result.workload import Workload
@@ -101,14 +101,9 @@ def queued_workers(
         stack.enter_context(quiet())
         stack.enter_context(dask.config.set(_SCHEDULER))
         cluster = stack.enter_context(kind(**options, job_name=f"uq-{workload.model.name}"))
-        queue = _Queue(cluster, table.system, where, say)
+        queue = _Queue(cluster, table.system, jobs, where, say)
         client = stack.enter_context(client_of(cluster))
-        crew = Workers(
-            client,
-            workload,
-            row_limit,
-            jobs=Jobs(jobs, table.rows_per_job, queue.keep_up, death),
-        )
+        crew = Workers(client, workload, row_limit, keep_up=queue.keep_up, death=death)
 
         def end() -> None:
             queue.end()
@@ -181,6 +176,8 @@ class _Queue(SchedulerPlugin):
     cluster : dask_jobqueue.JobQueueCluster
         With a scheduler to which the jobs connect; it starts none itself.
     system : str
+    most : int
+        Jobs at the same time.
     where : str
         The table of the machine file, for messages.
     say : callable
@@ -192,11 +189,13 @@ class _Queue(SchedulerPlugin):
         Jobs in succession that ended before they could compute.
     """
 
-    def __init__(self, cluster: "JobQueueCluster", system: str, where: str, say: Say) -> None:
+    def __init__(
+        self, cluster: "JobQueueCluster", system: str, most: int, where: str, say: Say
+    ) -> None:
         self._cluster, self._say = cluster, say
         self._job_class, self._options = cluster.new_spec["cls"], cluster.new_spec["options"]
         self._listing = [*_LISTINGS[system], getpass.getuser()]
-        self._where = where
+        self._most, self._where = most, where
         self._jobs: dict[str, Job] = {}  # that wait or run, by the name of their worker
         self._names: dict[str, str] = {}  # of workers, by address
         self._connected, self._ended = set[str](), set[str]()
@@ -218,7 +217,7 @@ class _Queue(SchedulerPlugin):
         self._ended.add(self._names.pop(worker, ""))
 
     def keep_up(self, wanted: int) -> None:
-        """Replace jobs that have ended, up to a number of jobs.
+        """Replace jobs that have ended, as many as are wanted.
 
         Raises
         ------
@@ -230,7 +229,7 @@ class _Queue(SchedulerPlugin):
         if now >= self._look:
             self._look = now + _LOOK_SECONDS
             self._drop_lost()
-        missing = min(wanted - len(self._jobs), _AT_ONCE)
+        missing = min(min(wanted, self._most) - len(self._jobs), _AT_ONCE)
         if missing > 0 and now >= self._submit:
             self._add(missing)
 

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import Any
 from uuid import uuid4
 
 from distributed import Client, Future, KilledWorker, as_completed
@@ -36,27 +36,6 @@ Returned = tuple[int, Rows, Chunk, float]
 """Number of the first row, the rows, their outputs, and their cost [s], 0 if unknown."""
 
 
-class Jobs(NamedTuple):
-    """Jobs of a queueing system: each is a worker that computes one chunk and ends.
-
-    Attributes
-    ----------
-    most : int
-        At the same time.
-    chunk_rows : int
-        Rows in a chunk.
-    keep_up : callable
-        Called regularly with the number of chunks that have not returned: submits jobs for them.
-    death : str
-        What is said of a row whose jobs died.
-    """
-
-    most: int
-    chunk_rows: int
-    keep_up: Callable[[int], object]
-    death: str
-
-
 class Workers:
     """Connected or expected workers, with their current and pending chunks.
 
@@ -73,12 +52,14 @@ class Workers:
     run : str
         Whose processes compute, as in `uq.execution.dask_task.evaluate_rows`; "" on an existing
         cluster.
-    jobs : Jobs, optional
-        In which the workers run.
+    keep_up : callable, optional
+        Of workers that are jobs, each for one chunk: called regularly with the number of chunks
+        that have not returned, and submits jobs for them.
+    death : str
+        What a row says whose workers died too often.
 
     Attributes
     ----------
-    jobs : Jobs or None
     given_up : int
         Rows whose workers died too often.
     """
@@ -90,10 +71,11 @@ class Workers:
         row_limit: float | None = None,
         watch: Callable[[int, bool], None] = lambda *_: None,
         run: str = "",
-        jobs: Jobs | None = None,
+        keep_up: Callable[[int], object] | None = None,
+        death: str = "killed every worker that computed it",
     ) -> None:
-        self.jobs = jobs
         self.given_up = 0
+        self._keep_up, self._death = keep_up, death
         self._client = client
         self._workload = workload
         self._spec = spec_of(workload)
@@ -112,7 +94,7 @@ class Workers:
     @property
     def dashboard(self) -> str:
         """Address of the dashboard of an existing cluster, or ""."""
-        if self._run or self.jobs:  # nothing is behind the address that dask reports
+        if self._run or self._keep_up:  # nothing is behind the address that dask reports
             return ""
         try:
             return str(self._client.dashboard_link or "")
@@ -146,7 +128,7 @@ class Workers:
         """Submit rows for computation."""
         how = self._spec, versions(), self._row_limit
         data = rows.x, rows.seed, start, self._run
-        if self.jobs:
+        if self._keep_up:
             from dask._task_spec import Task
 
             # A producer of data waits for a worker that is free, never behind other rows.
@@ -182,8 +164,8 @@ class Workers:
             else:
                 self._unsent.append(sent)
         self._watch(self.threads, bool(back))
-        if self.jobs:
-            self.jobs.keep_up(min(len(self), self.jobs.most))
+        if self._keep_up:
+            self._keep_up(len(self))
         if self._unsent and self._is_connected():
             again, self._unsent = self._unsent, []
             for sent in again:
@@ -198,8 +180,7 @@ class Workers:
             raise error
         if isinstance(error, KilledWorker):
             if count == 1:
-                death = self.jobs.death if self.jobs else "killed every worker that computed it"
-                fault = RowFailure(Status.CRASHED, death)
+                fault = RowFailure(Status.CRASHED, self._death)
                 self.given_up += 1
                 lost = lost_rows(self._workload.model, self._workload.settings, 1, fault, start)
                 return [(start, rows, lost, 0.0)]
