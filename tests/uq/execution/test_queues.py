@@ -15,7 +15,7 @@ from pathlib import Path
 
 import dask
 import pytest
-from fake_slurm import FakeSlurm
+from fake_queue import FakeQueue
 from own_study import own_study
 
 import uq as package
@@ -46,20 +46,20 @@ interface = "lo"
 """
 
 PROGRAM = """#!/bin/sh
-touch "$FAKE_SLURM/begun/$SLURM_JOB_ID"
-while [ -e "$FAKE_SLURM/hold/$SLURM_JOB_ID" ]; do sleep 0.1; done
+touch "$FAKE_QUEUE/begun/$JOB"
+while [ -e "$FAKE_QUEUE/hold/$JOB" ]; do sleep 0.1; done
 awk -v load=$1 'BEGIN {printf "life = %.17g", 3 / load}'
-echo $1 > "$FAKE_SLURM/done/$SLURM_JOB_ID-$2"
+echo $1 > "$FAKE_QUEUE/done/$JOB-$2"
 """
 
 
 @pytest.fixture
-def slurm(folder, monkeypatch):
+def queue_of(folder, monkeypatch):
     """Return a function that starts a queue with a plan, and a machine whose rows it computes."""
     monkeypatch.setattr(queues, "_LOOK_SECONDS", 1.0)
 
     def start(plan=(), machine=MACHINE, samples=10, program=PROGRAM):
-        queue = FakeSlurm(folder / "slurm", dict(plan))
+        queue = FakeQueue(folder / "queue", dict(plan))
         for name, value in queue.environment(os.environ["PATH"]).items():
             monkeypatch.setenv(name, value)
         (folder / "machine.toml").write_text(machine)
@@ -80,7 +80,7 @@ def run(output="own.nc", **options):
 
 def computed_here(queue):
     """Return the result of this computer, whose rows the queue does not count."""
-    os.environ["SLURM_JOB_ID"] = "none"
+    os.environ["JOB"] = "none"
     return run("here.nc", workers=0)
 
 
@@ -94,28 +94,36 @@ def check(queue, plan, ds):
     """Check that nothing was lost, nothing was computed twice, and the bits are those of here."""
     assert sorted(queue.rows, key=float) == sorted(map(repr, ds["load"].values.tolist()), key=float)
     assert queue.faults == {fault: list(plan.values()).count(fault) for fault in plan.values()}
-    assert not queue.alive
+    lost = sum(count for fault, count in queue.faults.items() if fault != "late")
+    assert queue.submitted == len(queue.rows) + lost and not queue.alive
     assert (ds["status"].values == Status.OK).all()
     assert ds.identical(computed_here(queue))
 
 
-def test_whatever_becomes_of_jobs_every_row_is_computed_once(slurm):
+def test_whatever_becomes_of_jobs_every_row_is_computed_once(queue_of):
     plan = {1: "kill-row", 2: "lose", 3: "late", 5: "kill", 6: "refuse"}
-    queue = slurm(plan, samples=7)
+    queue = queue_of(plan, samples=7)
     check(queue, plan, run(workers=4))
 
 
 @pytest.mark.slow
-def test_200_jobs_with_30_faults(slurm):
+def test_200_jobs_with_30_faults(queue_of):
     faults = [fault for fault in ("kill-row", "kill", "lose", "late", "refuse") for _ in range(6)]
     plan = random_plan(faults, 200)
-    queue = slurm(plan, samples=176)
+    queue = queue_of(plan, samples=176)
     check(queue, plan, run(workers=8))
     assert queue.submitted == 200
 
 
-def test_an_interrupted_run_cancels_its_jobs_and_resumes(slurm, folder):
-    queue = slurm(machine=MACHINE + "rows_per_job = 2\n", samples=6)
+@pytest.mark.parametrize("system", ["pbs", "lsf"])
+def test_other_queueing_systems_run_jobs(queue_of, system):
+    plan = {1: "lose"}
+    queue = queue_of(plan, MACHINE.replace("slurm", system), samples=2)
+    check(queue, plan, run(workers=2))
+
+
+def test_an_interrupted_run_cancels_its_jobs_and_resumes(queue_of, folder):
+    queue = queue_of(machine=MACHINE + "rows_per_job = 2\n", samples=6)
 
     command = ["run", "own.toml", "--model", "machine.toml", "-o", "own.nc", "--workers", "2"]
     process = subprocess.Popen(
@@ -133,8 +141,8 @@ def test_an_interrupted_run_cancels_its_jobs_and_resumes(slurm, folder):
     assert ds.identical(computed_here(queue))
 
 
-def test_a_row_whose_jobs_die_is_marked_and_says_so(slurm, folder):
-    queue = slurm({1: "kill-row"}, samples=2)
+def test_a_row_whose_jobs_die_is_marked_and_says_so(queue_of, folder):
+    queue = queue_of({1: "kill-row"}, samples=2)
     with dask.config.set({"distributed.scheduler.allowed-failures": 0}):
         ds = run(workers=1)
     assert sorted(ds["status"].values) == [Status.OK, Status.CRASHED]
@@ -148,31 +156,31 @@ def test_a_row_whose_jobs_die_is_marked_and_says_so(slurm, folder):
 WHERE = r'machine.toml: \[queue\] system = "slurm": '
 
 
-def test_a_queue_that_refuses_all_jobs_ends_the_run(slurm):
-    slurm(dict.fromkeys(range(1, 9), "refuse"))
+def test_a_queue_that_refuses_all_jobs_ends_the_run(queue_of):
+    queue_of(dict.fromkeys(range(1, 9), "refuse"))
     refusal = "'sbatch' refuses jobs: sbatch: error: QOSMaxSubmitJobPerUserLimit$"
     with pytest.raises(RunError, match=WHERE + refusal):
         run(workers=2)
 
 
-def test_a_queue_that_refuses_further_jobs_is_said_once(slurm):
-    queue = slurm(dict.fromkeys(range(2, 6), "refuse"), samples=3)
+def test_a_queue_that_refuses_further_jobs_is_said_once(queue_of):
+    queue = queue_of(dict.fromkeys(range(2, 6), "refuse"), samples=3)
     lines = []
     run(workers=2, say=lines.append)
     assert len([line for line in lines if "refuses more jobs for now: sbatch: error" in line]) == 1
     assert len(queue.rows) == 3
 
 
-def test_a_queue_that_loses_all_jobs_ends_the_run(slurm, monkeypatch):
+def test_a_queue_that_loses_all_jobs_ends_the_run(queue_of, monkeypatch):
     monkeypatch.setattr(queues, "_LOOK_SECONDS", 0.1)
-    slurm(dict.fromkeys(range(1, 31), "lose"))
+    queue_of(dict.fromkeys(range(1, 31), "lose"))
     wasted = "10 jobs in succession ended before they could compute; their output is in "
     with pytest.raises(RunError, match=WHERE + wasted):
         run(workers=2)
 
 
-def test_what_is_missing_for_a_queue_is_one_line(slurm, monkeypatch):
-    slurm()
+def test_what_is_missing_for_a_queue_is_one_line(queue_of, monkeypatch):
+    queue_of()
     with monkeypatch.context() as without:
         without.setitem(sys.modules, "dask_jobqueue", None)
         with pytest.raises(InputError, match=WHERE[:-2] + r" needs .* 'vibrolife\[queue\]'$"):
@@ -199,8 +207,8 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("change", MISTAKES)
-def test_a_mistake_in_the_table_is_one_line(slurm, uq, change):
-    slurm(machine=MACHINE.replace(*change))
+def test_a_mistake_in_the_table_is_one_line(queue_of, uq, change):
+    queue_of(machine=MACHINE.replace(*change))
     ended = uq("check", "own.toml", "--model", "machine.toml")
     assert (ended.code, ended.out) == (2, "")
     assert MISTAKES[change] in ended.err and ended.err.count("\n") == 1

@@ -1,9 +1,9 @@
-"""A queue like SLURM on this computer: jobs are real, and a plan says which of them go wrong.
+"""A queue on this computer: jobs are real, and a plan says which of them go wrong.
 
-``python fake_slurm.py sbatch SCRIPT``, ``... squeue``, ``... scancel NUMBER...``; the folder of the
-queue is in the environment. A plan is a JSON object: number of a job -> what happens to it.
+It has the commands of SLURM, PBS and LSF; its folder is in the environment. A plan is a JSON
+object: number of a job -> what happens to it.
 
-    refuse      sbatch refuses it
+    refuse      it is not accepted
     lose        it is accepted, and never heard of again
     late        it starts after seconds
     kill        it is killed when it starts, before a worker can connect
@@ -15,7 +15,6 @@ import fcntl
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -24,12 +23,12 @@ from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 
-FOLDER = "FAKE_SLURM"
+FOLDER = "FAKE_QUEUE"
 LATE_SECONDS = 2.0
 _POLL_SECONDS = 0.02
 
 
-class FakeSlurm:
+class FakeQueue:
     """The queue as a test sees it.
 
     Parameters
@@ -46,7 +45,7 @@ class FakeSlurm:
             (folder / name).mkdir(parents=True)
         (folder / "plan.json").write_text(json.dumps(plan))
         (folder / "number").write_text("0")
-        for command in ("sbatch", "squeue", "scancel"):
+        for command in COMMANDS:
             path = folder / "bin" / command
             path.write_text(f'#!/bin/sh\nexec {sys.executable} -S {__file__} {command} "$@"\n')
             path.chmod(0o755)
@@ -76,7 +75,7 @@ class FakeSlurm:
         return [path.read_text().strip() for path in (self.folder / "done").iterdir()]
 
 
-def _sbatch(folder, script):
+def _submit(folder, script="/dev/stdin"):
     with (folder / "number").open("r+") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         number = int(file.read()) + 1
@@ -93,7 +92,7 @@ def _sbatch(folder, script):
     if fault == "kill-row":
         (folder / "hold" / str(number)).touch()
     job = folder / f"job-{number}.sh"
-    shutil.copy(script, job)
+    job.write_bytes(Path(script).read_bytes())
     command = [sys.executable, __file__, "run", str(job), str(number), fault]
     nowhere = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
     runner = subprocess.Popen(command, start_new_session=True, **nowhere)
@@ -114,7 +113,7 @@ def _run(folder, job, number, fault):
                 with suppress(psutil.NoSuchProcess):
                     member.kill()
             process.wait()
-        while not alive.exists():  # sbatch has not written it
+        while not alive.exists():  # it has not been written
             time.sleep(_POLL_SECONDS)
         alive.unlink()
         os._exit(0)
@@ -122,9 +121,9 @@ def _run(folder, job, number, fault):
     signal.signal(signal.SIGTERM, end)
     if fault == "late":
         time.sleep(LATE_SECONDS)
-    output = re.search(r"#SBATCH -o (\S+)", text)[1].replace("%J", number)
-    with open(output, "wb") as log:
-        environment = os.environ | {"SLURM_JOB_ID": number}
+    output = re.search(r"#[A-Z]+ -o (\S+)", text)[1].replace("%J", number)
+    with open(output + f"o{number}" * output.endswith("/"), "wb") as log:
+        environment = os.environ | {"JOB": number}
         process = subprocess.Popen(
             ["bash", job], stdout=log, stderr=log, env=environment, start_new_session=True
         )
@@ -144,16 +143,22 @@ def _note(folder, fault):
         file.write(f"{fault}\n")
 
 
-def _squeue(folder, *_):
+def _list(folder, *_):
     print("\n".join(path.name for path in (folder / "alive").iterdir()))
 
 
-def _scancel(folder, *numbers):
+def _cancel(folder, *numbers):
     for number in numbers:
         with suppress(OSError, ValueError):
             os.kill(int((folder / "alive" / number).read_text()), signal.SIGTERM)
 
 
+COMMANDS = {
+    **dict.fromkeys(("sbatch", "qsub", "bsub"), _submit),
+    **dict.fromkeys(("squeue", "qselect", "bjobs"), _list),
+    **dict.fromkeys(("scancel", "qdel", "bkill"), _cancel),
+}
+
 if __name__ == "__main__":
-    commands = {"sbatch": _sbatch, "squeue": _squeue, "scancel": _scancel, "run": _run}
-    commands[sys.argv[1]](Path(os.environ[FOLDER]), *sys.argv[2:])
+    command, *arguments = sys.argv[1:]
+    (COMMANDS | {"run": _run})[command](Path(os.environ[FOLDER]), *arguments)
