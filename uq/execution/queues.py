@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 import dask
 from dask.utils import parse_bytes
 from distributed.diagnostics.plugin import SchedulerPlugin
+from distributed.security import Security
 
 from uq.errors import InputError, RunError, one_line
 from uq.execution.clusters import client_of
@@ -59,7 +60,6 @@ _SCHEDULER = {
 _SERVER: dict[str, Any] = {
     "scheduler_options": {"dashboard": False, "dashboard_address": ":0"},
     "silence_logs": "critical",
-    "security": True,
 }
 
 
@@ -93,14 +93,18 @@ def queued_workers(
     if " " in str(file):
         raise InputError(f"{file}: the files of a job cannot be in a folder with blanks")
     kind = _kind_of_cluster(table.system, where)
-    # For the output of jobs and the certificates that let them reach this process: not for others.
-    logs = tempfile.mkdtemp(prefix=f"{workload.model.name}.jobs-", dir=file.parent)
+    logs = tempfile.mkdtemp(prefix=f"{workload.model.name}.jobs-", dir=file.parent)  # private
     death = f"its job died each time: killed, or at its walltime {table.walltime}; see {logs}"
-    options = _SERVER | {"log_directory": logs, "shared_temp_directory": logs} | job_options(table)
+    options = _SERVER | {"log_directory": logs, "security": _secured(Path(logs))}
     with ExitStack() as stack:
         stack.enter_context(quiet())
         stack.enter_context(dask.config.set(_SCHEDULER))
-        cluster = stack.enter_context(kind(**options, job_name=f"uq-{workload.model.name}"))
+        try:
+            job = job_options(table) | {"job_name": f"uq-{workload.model.name}"}
+            cluster = stack.enter_context(kind(**options, **job))
+        except (RuntimeError, ValueError) as error:  # such as of its interface
+            shutil.rmtree(logs, ignore_errors=True)
+            raise InputError(f"{where}: {one_line(error)}") from None
         queue = _Queue(cluster, table.system, jobs, where, say)
         client = stack.enter_context(client_of(cluster))
         crew = Workers(client, workload, row_limit, keep_up=queue.keep_up, death=death)
@@ -131,6 +135,20 @@ def _kind_of_cluster(system: str, where: str) -> Any:
                 " here with --workers 0"
             )
     return kind
+
+
+def _secured(folder: Path) -> Security:
+    """Return certificates with which jobs reach this process; whoever reads the folder can, too."""
+    made = Security.temporary()
+    files = {"key": folder / "key.pem", "cert": folder / "cert.pem"}
+    files["key"].write_text(made.tls_worker_key)
+    files["cert"].write_text(made.tls_worker_cert)
+    roles = {
+        f"tls_{role}_{kind}": str(file)
+        for role in ("scheduler", "worker", "client")
+        for kind, file in files.items()
+    }
+    return Security(require_encryption=True, tls_ca_file=str(files["cert"]), **roles)
 
 
 def job_options(table: QueueTable) -> dict[str, Any]:

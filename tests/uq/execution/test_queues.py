@@ -190,6 +190,13 @@ def test_what_is_missing_for_a_queue_is_one_line(queue_of, monkeypatch):
         run(workers=2)
 
 
+def test_a_network_that_does_not_exist_is_one_line(queue_of, folder):
+    queue_of(machine=MACHINE.replace('"lo"', '"ib7"'))
+    with pytest.raises(InputError, match=WHERE + ".*'ib7' is not a valid network interface") as no:
+        run(workers=2)
+    assert len(no.value.lines) == 1 and not list(folder.glob("pad.jobs*"))
+
+
 MISTAKES = {
     ('"slurm"', '"slrum"'): '[queue] system = "slrum": no such queueing system; did you mean '
     "'slurm'? (allowed: slurm, pbs, lsf)",
