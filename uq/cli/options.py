@@ -42,7 +42,7 @@ ModelReference = Annotated[
 ]
 Workers = Annotated[
     int | None,
-    typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
+    typer.Option(min=0, metavar="N", help="Worker processes, or jobs; 0: compute in this process."),
 ]
 Samples = Annotated[
     int | None, typer.Option(min=1, metavar="N", help="Overrides the study's number.")

@@ -17,6 +17,7 @@ Reading order; each part imports only those above it:
     loading         load studies and models, and run one row of a model
     clusters        dask workers of this computer, or of an existing cluster
     recomputation   rows computed again: one, or all from what they have kept
+    queues          rows computed by the jobs of a queueing system
     executor        rows of one run
     planning        cost of a study, estimated from a few of its rows
     runner          run of a study: rows in chunks, on this computer or on dask workers

@@ -16,6 +16,7 @@ from typing import Any
 
 import dask
 from distributed import Client, LocalCluster
+from distributed.deploy.cluster import Cluster
 from distributed.security import Security
 
 from uq.errors import InputError, RunError, one_line
@@ -69,12 +70,12 @@ def local_workers(
                 silence_logs=logging.CRITICAL,
             )
         stack.enter_context(cluster)
-        client = stack.enter_context(_client_of(cluster))
+        client = stack.enter_context(client_of(cluster))
         stack.enter_context(undone(children.close))  # first: workers wait for their rows
         yield Workers(client, workload, row_limit, run=stack.enter_context(named(children)))
 
 
-def _client_of(server: LocalCluster | str, **options: Any) -> Client:
+def client_of(server: Cluster | str, **options: Any) -> Client:
     """Connect to a scheduler; late replies to the client say nothing."""
     client = Client(server, set_as_default=False, **options)
     loop: Any = client.loop
@@ -135,7 +136,7 @@ def remote_workers(
         _check_address(where, address)
         _check_certificates(where, encrypted=address.startswith("tls:"))
         try:
-            client = _client_of(address, timeout=_REMOTE_SECONDS)
+            client = client_of(address, timeout=_REMOTE_SECONDS)
         except (OSError, ValueError, TypeError, RuntimeError) as error:  # also of its addresses
             reason = one_line(error)
             raise InputError(

@@ -4,12 +4,15 @@ A worker passes the rows on to a process, one per thread, which they may crash o
 separate module, so that a worker imports only what it needs.
 """
 
+import asyncio
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 from uuid import uuid4
 
 import numpy as np
+from distributed import Status, get_worker
 from numpy.typing import NDArray
 
 from uq.contract import Floats
@@ -18,6 +21,8 @@ from uq.execution.child import ModelSpec
 from uq.execution.isolation import Children
 from uq.study.evaluate import Chunk
 from uq.study.provenance import differences
+
+_FETCHED_SECONDS = 0.1  # between looks whether a result has been fetched
 
 _of_runs = {"": Children()}
 """Processes that compute rows for each run in this process; of a worker under ""."""
@@ -55,6 +60,26 @@ def evaluate_rows(
         child.start()
         began = time.perf_counter()
         return child.evaluate(x, seed, start), time.perf_counter() - began
+
+
+def evaluate_in_job(*rows: Any) -> tuple[Chunk, float]:
+    """Run rows as `evaluate_rows` does, on a worker that ends when they have been fetched."""
+    worker: Any = get_worker()
+    leaving = _leave_after(worker, worker.get_current_task())
+    asyncio.run_coroutine_threadsafe(leaving, worker.loop.asyncio_loop).result()
+    return evaluate_rows(*rows)
+
+
+async def _leave_after(worker: Any, key: object) -> None:
+    """Let a worker take nothing but the task that it has begun, and close after it."""
+    worker.status = Status.paused
+
+    async def leave() -> None:
+        while key in worker.state.tasks:  # its result has not been fetched
+            await asyncio.sleep(_FETCHED_SECONDS)
+        await worker.close(reason="its job is done")
+
+    worker.loop.add_callback(leave)
 
 
 @contextmanager

@@ -24,6 +24,7 @@ from uq.study.row_sampling import Rows
 
 if TYPE_CHECKING:
     from uq.execution.workers import Workers
+    from uq.machines.queue_table import QueueTable
 
 
 CHUNK_SECONDS = 0.5
@@ -151,15 +152,15 @@ class Dispatcher:
         while self.left:
             self._here(self._good_chunk())
 
-    def finish_on(self, crew: "Workers") -> None:
-        """Run the remaining rows on workers."""
+    def finish_on(self, crew: "Workers", jobs: int = 0, size: int = 0) -> None:
+        """Run the remaining rows on workers, or in a number of jobs with chunks of a size."""
         self._dashboard = crew.dashboard
         while self.left:
             threads = crew.threads
-            sharing = max(1, threads)
+            sharing = max(1, threads, jobs)
             # Only as many chunks are sent as keep the workers busy.
             while self._untaken and len(crew) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
-                crew.send(*self._take(self._shared(sharing)))
+                crew.send(*self._take(size or self._shared(sharing)))
             before, self._under_way = self._under_way, self._at_once(crew.begun(threads))
             if self._under_way and not before:
                 self.report_progress()  # the first row may take minutes
@@ -293,7 +294,8 @@ class Executor:
             self._stack.enter_context(compilation(self._compiling))
         else:
             self._stack.enter_context(undone(self._children.close))
-            self._begin(1)
+            if not self._queue:
+                self._begin(1)
         return self
 
     def __exit__(self, *exception: object) -> None:
@@ -317,6 +319,11 @@ class Executor:
             dispatcher.begin_here(_SHARE_HERE)
             dispatcher.finish_on(crew)
             return
+        if queue := self._queue:  # no row here: others use the computer that submits, too
+            if dispatcher.left:
+                crew = self._started(dispatcher)
+                dispatcher.finish_on(crew, workers or queue.jobs, queue.rows_per_job)
+            return
         begun = not workers and self._crew is None
         if begun:
             dispatcher.begin_here(share=1)
@@ -338,6 +345,11 @@ class Executor:
                 from uq.execution.clusters import remote_workers
 
                 crew = remote_workers(self._options.scheduler, *how)
+            elif self._queue:
+                from uq.execution.queues import queued_workers
+
+                jobs = self._options.workers or self._queue.jobs
+                crew = queued_workers(self._queue, jobs, *how, self._options.say)
             else:
                 count = processes(dispatcher.workload, self._options.workers)
                 self._begin(count)  # they import while dask does
@@ -346,6 +358,13 @@ class Executor:
                 crew = local_workers(count, self._children, *how)
             self._crew = self._stack.enter_context(crew)
         return self._crew
+
+    @property
+    def _queue(self) -> "QueueTable | None":
+        """The jobs that the model asks for, unless the user asks for other workers."""
+        batch, options = self._workload.model.batch, self._options
+        elsewhere = options.scheduler is not None or options.workers == 0
+        return None if elsewhere or not isinstance(batch, RowByRow) else batch.queue
 
     @cached_property
     def _spec(self) -> ModelSpec:

@@ -58,7 +58,8 @@ def run(
         Default ``results/<name>.nc``.
     workers : int, optional
         Worker processes; 0 computes in this process, which a crashing row ends. By default one
-        process computes what takes a few seconds, else one worker per core.
+        process computes what takes a few seconds, else one worker per core. Jobs of a cluster for
+        a machine file with a table [queue].
     scheduler : str, optional
         Address of a running dask scheduler, instead of own workers.
     chunk_rows : int, optional

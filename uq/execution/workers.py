@@ -12,13 +12,14 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from itertools import islice
 from typing import Any
+from uuid import uuid4
 
 from distributed import Client, Future, KilledWorker, as_completed
 from distributed.utils import silence_logging_cmgr
 
 from uq.contract import Status
 from uq.errors import InputError, RunError, one_line
-from uq.execution.dask_task import evaluate_rows
+from uq.execution.dask_task import evaluate_in_job, evaluate_rows
 from uq.execution.isolation import TRIES, spec_of
 from uq.result.workload import Workload
 from uq.study.evaluate import Chunk, RowFailure, lost_rows
@@ -51,6 +52,16 @@ class Workers:
     run : str
         Whose processes compute, as in `uq.execution.dask_task.evaluate_rows`; "" on an existing
         cluster.
+    keep_up : callable, optional
+        Of workers that are jobs, each for one chunk: called regularly with the number of chunks
+        that have not returned, and submits jobs for them.
+    death : str
+        What a row says whose workers died too often.
+
+    Attributes
+    ----------
+    given_up : int
+        Rows whose workers died too often.
     """
 
     def __init__(
@@ -60,7 +71,11 @@ class Workers:
         row_limit: float | None = None,
         watch: Callable[[int, bool], None] = lambda *_: None,
         run: str = "",
+        keep_up: Callable[[int], object] | None = None,
+        death: str = "killed every worker that computed it",
     ) -> None:
+        self.given_up = 0
+        self._keep_up, self._death = keep_up, death
         self._client = client
         self._workload = workload
         self._spec = spec_of(workload)
@@ -79,7 +94,7 @@ class Workers:
     @property
     def dashboard(self) -> str:
         """Address of the dashboard of an existing cluster, or ""."""
-        if self._run:  # nothing is behind the address that dask reports
+        if self._run or self._keep_up:  # nothing is behind the address that dask reports
             return ""
         try:
             return str(self._client.dashboard_link or "")
@@ -113,7 +128,15 @@ class Workers:
         """Submit rows for computation."""
         how = self._spec, versions(), self._row_limit
         data = rows.x, rows.seed, start, self._run
-        future = self._client.submit(evaluate_rows, *how, *data, pure=False)
+        if self._keep_up:
+            from dask._task_spec import Task
+
+            # A producer of data waits for a worker that is free, never behind other rows.
+            key = f"{evaluate_in_job.__name__}-{uuid4()}"
+            task = Task(key, evaluate_in_job, *how, *data, _data_producer=True)
+            future = self._client.get({key: task}, key, sync=False)
+        else:
+            future = self._client.submit(evaluate_rows, *how, *data, pure=False)
         self._under_way[future] = start, rows, tries
         self._arrivals.add(future)
 
@@ -141,6 +164,8 @@ class Workers:
             else:
                 self._unsent.append(sent)
         self._watch(self.threads, bool(back))
+        if self._keep_up:
+            self._keep_up(len(self))
         if self._unsent and self._is_connected():
             again, self._unsent = self._unsent, []
             for sent in again:
@@ -155,7 +180,8 @@ class Workers:
             raise error
         if isinstance(error, KilledWorker):
             if count == 1:
-                fault = RowFailure(Status.CRASHED, "killed every worker that computed it")
+                fault = RowFailure(Status.CRASHED, self._death)
+                self.given_up += 1
                 lost = lost_rows(self._workload.model, self._workload.settings, 1, fault, start)
                 return [(start, rows, lost, 0.0)]
             half = count // 2

@@ -2,6 +2,7 @@
 
 Reading order; each part imports only those above it:
 
+    queue_table      the table ``[queue]`` of a machine file
     compilation      detect compilation by numba, which may take a while
     returned         outputs of a function
     row_resources    resources of a row of a program

@@ -4,7 +4,7 @@ import hashlib
 import keyword
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import nan
 from pathlib import Path
@@ -19,6 +19,7 @@ from uq.machines.fmu_description import (
     FmuOutputTable,
     FmuParameterTable,
     FmuTable,
+    arrays_of,
     bounds_of,
     description_of,
     stamp_of,
@@ -57,7 +58,7 @@ def fmu_of(path: Path) -> Model:
     parameters = file.parameters or _declared(path, settable, FmuParameterTable)
     outputs = file.outputs or _declared(path, variables_of(description, "output"), FmuOutputTable)
     machine = file.machine
-    refuse(path, _faults(parameters, outputs, reals))
+    refuse(path, _faults(parameters, outputs, reals, arrays_of(description)))
     try:
         times = times_of(description, machine.stop, machine.step)
     except ValueError as error:
@@ -120,6 +121,7 @@ def _faults(
     parameters: Mapping[str, FmuParameterTable],
     outputs: Mapping[str, FmuOutputTable],
     reals: Mapping[str, Any],
+    arrays: Collection[str],
 ) -> Iterator[InputFault]:
     settable = [name for name, real in reals.items() if real.causality in ("parameter", "input")]
     for table, tables, allowed in (
@@ -134,9 +136,10 @@ def _faults(
             variable = entry.variable or name
             if variable not in allowed:
                 kind = "parameter of the FMU" if table == "parameters" else "variable of the FMU"
-                yield InputFault(
-                    (table, name, "variable"), unknown(kind, variable, allowed), variable
-                )
+                problem = unknown(kind, variable, allowed)
+                if variable in arrays:
+                    problem = "is an array; let the FMU declare its elements as scalars"
+                yield InputFault((table, name, "variable"), problem, variable)
     for name, given in parameters.items():
         real = reals.get(given.variable or name)
         if real is not None and given.nominal is None and real.start is None:
@@ -241,7 +244,8 @@ class _Fmu:
         if stamp_of(self.path) != self.stamp:
             raise FmuError("the file was changed after the run began")
         description, (start, stop, step) = description_of(self.path), self.times
-        wanted = "modelDescription.xml", "resources/", f"binaries/{fmpy.platform}/"
+        places = [f"binaries/{name}/" for name in (fmpy.platform, fmpy.platform_tuple)]
+        wanted = "modelDescription.xml", "resources/", *places
         fmpy.extract(str(self.path), str(unpacked), include=lambda name: name.startswith(wanted))
         instance = instantiate_fmu(str(unpacked), description, logger=logger)
         fatal = False
@@ -286,6 +290,7 @@ def reduced(output: FmuOutputTable, time: Floats, values: Floats) -> float | Cen
         For a life, the time from the start until the variable reaches its level, interpolated
         between two values; a lower bound if it does not. NaN if a value is not finite.
     """
+    values = np.asarray(values, float)
     if not np.isfinite(values).all():
         return nan
     if not output.is_life:

@@ -1,9 +1,11 @@
-"""Description of an FMU [1]_, read by FMPy, and of the machine file that names it.
+"""Description of an FMU [1]_ [2]_, read by FMPy, and of the machine file that names it.
 
 References
 ----------
 .. [1] T. Blochwitz et al., "Functional Mockup Interface 2.0: The standard for tool independent
    exchange of simulation models", Proc. 9th Int. Modelica Conf., 173-184 (2012).
+.. [2] A. Junghanns et al., "The Functional Mock-up Interface 3.0 - new features enabling new
+   applications", Proc. 14th Int. Modelica Conf., 17-26 (2021).
 """
 
 import re
@@ -87,7 +89,8 @@ class FmuFile(TomlTable):
     uncertain: Uncertain = {}
 
 
-_VERSION = "2.0"
+_VERSIONS = re.compile(r"2\.0|3\.0(\.\d+)?")
+_FLOATS = ("Real", "Float64", "Float32")  # of FMI 2, and of FMI 3
 _UNBOUNDED = 1e300  # tools write such values for an infinite bound
 
 
@@ -117,8 +120,8 @@ def _read(path: Path, stamp: tuple[int, int]) -> Any:
         raise InputError(f"{path}: an FMU needs FMPy: pip install 'vibrolife[fmu]'") from None
     try:
         version = _version_of(path)  # FMPy also reads others, and complains about them
-        if version != _VERSION:
-            raise InputError(f"{path}: is of FMI {version}, not {_VERSION}; export it as such")
+        if not _VERSIONS.fullmatch(version):
+            raise InputError(f"{path}: is of FMI {version}, not 2.0 or 3.0; export it as such")
         description = fmpy.read_model_description(str(path), validate=False)
         platforms = fmpy.supported_platforms(str(path))
     except InputError:
@@ -141,12 +144,19 @@ def _version_of(path: Path) -> str:
 
 
 def variables_of(description: Any, causality: str = "") -> dict[str, Any]:
-    """Return the real variables of an FMU by name, optionally of one causality only."""
+    """Return the real scalars of an FMU by name, optionally of one causality only."""
     return {
         variable.name: variable
         for variable in description.modelVariables
-        if variable.type == "Real" and causality in ("", variable.causality)
+        if variable.type in _FLOATS
+        and not variable.dimensions
+        and causality in ("", variable.causality)
     }
+
+
+def arrays_of(description: Any) -> set[str]:
+    """Return the names of the arrays of an FMU, which cannot be inputs or outputs."""
+    return {variable.name for variable in description.modelVariables if variable.dimensions}
 
 
 def times_of(

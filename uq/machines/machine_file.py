@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from uq.contract import ROW_NAME
 from uq.errors import InputError, nearest, one_line
 from uq.files.whole_files import file_there, node
+from uq.machines.queue_table import QueueTable
 from uq.machines.row_by_row import SEED
 from uq.sampling.input_faults import InputFault, fault_of
 from uq.text.literals import read_toml
@@ -61,9 +62,17 @@ def data_of(path: Path) -> dict[str, Any]:
     return data
 
 
+_QUEUE = re.compile(rb"(?ms)^\n?\[queue\].*?\n(?=\n*^\[|\n*\Z)")
+
+
 def content_of(path: Path) -> bytes:
-    """Return the normalised content of a machine file: no byte-order mark, LF line ends."""
-    return path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
+    """Return the content of a machine file that determines its rows.
+
+    Without byte-order mark and table [queue], which says where they are computed; with LF line
+    ends.
+    """
+    text = path.read_bytes().removeprefix(BOM_UTF8).replace(b"\r\n", b"\n")
+    return _QUEUE.sub(b"", text)
 
 
 def read_as(kind: type[T], path: Path) -> T:
@@ -88,7 +97,7 @@ def _keys(file: type[BaseModel], place: Sequence[Any]) -> tuple[str, list[str]]:
     table: Any = file
     if len(place) > 1:
         table = file.model_fields[place[0]].annotation
-        table = table if isinstance(table, type) else table.__args__[-1]
+        table = table if isinstance(table, type) else table.__args__[-1]  # of dict, or None |
     names = [field.alias or name for name, field in table.model_fields.items()]
     return "key" if len(place) > 1 else "table", names
 
@@ -184,6 +193,7 @@ class MachineFile(TomlTable):
     parameters: Annotated[dict[Name, ParameterTable], Field(min_length=1)]
     outputs: Annotated[dict[Name, OutputTable], Field(min_length=1)]
     uncertain: Uncertain = {}
+    queue: None | QueueTable = None
 
 
 def read_machine(path: Path) -> MachineFile:

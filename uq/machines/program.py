@@ -81,7 +81,9 @@ def program_of(path: Path) -> Model:
     }
     machine = read.machine
     random = _takes_seed(machine, folder)
-    batch = RowByRow(runner, tuple(inputs), returned, True, folders.leave, folders.keep)
+    batch = RowByRow(
+        runner, tuple(inputs), returned, True, folders.leave, folders.keep, queue=read.queue
+    )
     title = machine.title or machine.name
     about = machine.name, title, machine.version
     return model_from(*about, inputs, returned, batch, random, StudyDefaults.of_file(read))

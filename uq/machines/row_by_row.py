@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from inspect import isfunction
 from math import isfinite
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ from uq.machines.returned import Returned, RowError, checked, dimensions
 from uq.machines.study_defaults import StudyDefaults
 from uq.sampling.input_faults import unknown
 from uq.text.quantities import fault_of_unit, read_quantity
+
+if TYPE_CHECKING:
+    from uq.machines.queue_table import QueueTable
 
 _NO_PROPOSALS = StudyDefaults()
 
@@ -168,6 +171,8 @@ class RowByRow:
         seed if it is wanted; returns the folder in which its files are kept, or None.
     loads_first : bool
         Whether its first row may take longer than others, as it imports or compiles something.
+    queue : QueueTable or None
+        Jobs of a cluster that compute the rows, unless a run asks for other workers.
     """
 
     function: Callable[..., Any]
@@ -177,6 +182,7 @@ class RowByRow:
     leave: Callable[[], object] = lambda: None
     keep: Callable[[list[float | int]], Path | None] = lambda numbers: None
     loads_first: bool = True
+    queue: "QueueTable | None" = None
 
     @property
     def stops_rows(self) -> bool:

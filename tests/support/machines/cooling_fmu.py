@@ -32,6 +32,32 @@ DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 </fmiModelDescription>
 """
 
+DESCRIPTION_3 = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="3.0" modelName="Cooling.Body" instantiationToken="{{cooling}}"
+    description="A body that cools down">
+  <CoSimulation modelIdentifier="cooling" canHandleVariableCommunicationStepSize="true"/>
+  <TypeDefinitions><Float64Type name="Rate" unit="1/s" min="0" max="50"/></TypeDefinitions>
+  {experiment}
+  <ModelVariables>
+    <Float64 name="time" valueReference="9" causality="independent" variability="continuous"/>
+    <Float64 name="body.rate" valueReference="0" causality="parameter" variability="fixed"
+        description="rate of cooling" declaredType="Rate" start="0.5"/>
+    <Float32 name="T0" valueReference="1" causality="parameter" variability="tunable"
+        unit="K" start="400" max="1.7976931348623157E+308"/>
+    <Float64 name="fault" valueReference="2" causality="parameter" variability="fixed" start="0"/>
+    <Float64 name="T" valueReference="3" causality="output" variability="continuous"
+        description="temperature" unit="K" initial="calculated"/>
+    <Float32 name="steps" valueReference="4" causality="output" variability="continuous"
+        initial="calculated"/>
+    <Float64 name="field" valueReference="5" causality="output" initial="calculated">
+      <Dimension start="2"/></Float64>
+    <Int32 name="count" valueReference="6" causality="parameter" variability="fixed" start="1"/>
+    <Clock name="tick" valueReference="7" causality="input" intervalVariability="triggered"/>
+  </ModelVariables>
+  <ModelStructure><Output valueReference="3"/></ModelStructure>
+</fmiModelDescription>
+"""
+
 FOR_MODEL_EXCHANGE = (
     DESCRIPTION.replace("fmiVersion", 'numberOfEventIndicators="0" fmiVersion')
     .replace('canHandleVariableCommunicationStepSize="true"', "")
@@ -139,6 +165,47 @@ STUB(EnterEventMode) STUB(EnterContinuousTimeMode) STUB(SetTime) STUB(GetEventIn
 STUB(GetIntegerStatus) STUB(GetBooleanStatus) STUB(GetStringStatus)
 """
 
+FUNCTIONS_3 = r"""
+typedef void (*Logger3)(void *, int, const char *, const char *);
+static Logger3 log_3;
+static void log_2(void *e, const char *n, int status, const char *kind, const char *text, ...) {
+    log_3(NULL, status, kind, text);
+}
+static const Callbacks callbacks_3 = {log_2};
+void *fmi3InstantiateCoSimulation(const char *name, const char *token, const char *resources,
+        char visible, char logging, char events, char early, const unsigned *required, size_t n,
+        void *environment, Logger3 logger, void *update) {
+    log_3 = logger;
+    return fmi2Instantiate(name, 1, token, resources, &callbacks_3, visible, logging);
+}
+void fmi3FreeInstance(void *body) { fmi2FreeInstance(body); }
+int fmi3EnterInitializationMode(void *b, char d, double t, double start, char s, double stop) {
+    return OK;
+}
+int fmi3ExitInitializationMode(void *b) { return fmi2ExitInitializationMode(b); }
+int fmi3Terminate(void *b) { return OK; }
+int fmi3SetFloat64(void *b, const unsigned *which, size_t n, const double *value, size_t m) {
+    return fmi2SetReal(b, which, n, value);
+}
+int fmi3GetFloat64(void *b, const unsigned *which, size_t n, double *value, size_t m) {
+    return fmi2GetReal(b, which, n, value);
+}
+int fmi3SetFloat32(void *b, const unsigned *which, size_t n, const float *value, size_t m) {
+    for (size_t i = 0; i < n; i++) ((Body *)b)->value[which[i]] = value[i];
+    return OK;
+}
+int fmi3GetFloat32(void *b, const unsigned *which, size_t n, float *value, size_t m) {
+    for (size_t i = 0; i < n; i++) value[i] = ((Body *)b)->value[which[i]];
+    return OK;
+}
+int fmi3DoStep(void *b, double time, double step, char no_set, char *event, char *terminate,
+        char *early, double *last) {
+    *event = *terminate = *early = 0;
+    *last = time + step;
+    return fmi2DoStep(b, time, step, no_set);
+}
+"""
+
 
 def write(path, library, description=DESCRIPTION, experiment=EXPERIMENT, platform=""):
     """Write an FMU: the compiled library with a description."""
@@ -146,9 +213,22 @@ def write(path, library, description=DESCRIPTION, experiment=EXPERIMENT, platfor
 
     with zipfile.ZipFile(path, "w") as file:
         file.writestr("modelDescription.xml", description.format(experiment=experiment))
-        place = platform or fmpy.platform
+        here = fmpy.platform if 'fmiVersion="2' in description else fmpy.platform_tuple
+        place = platform or here
         file.write(library, f"binaries/{place}/cooling{fmpy.sharedLibraryExtension}")
         file.writestr("resources/readme.txt", "nothing")
+
+
+def stubs_3():
+    """Return the other functions of FMI 3, which FMPy demands though no row calls them."""
+    from fmpy.fmi3 import _FMU3
+
+    names = {name for name in dir(_FMU3) if name.startswith("fmi3")}
+    return "".join(
+        f"int {name}(void) {{ return OK; }}\n"
+        for name in sorted(names)
+        if f"{name}(" not in FUNCTIONS_3
+    )
 
 
 def compiled(folder, source=SOURCE):
@@ -156,7 +236,7 @@ def compiled(folder, source=SOURCE):
     pytest.importorskip("fmpy")
     if not shutil.which("gcc"):
         pytest.skip("gcc is not installed: no FMU can be made")
-    (folder / "cooling.c").write_text(source)
+    (folder / "cooling.c").write_text(source + FUNCTIONS_3 + stubs_3())
     library = folder / "cooling.library"
     command = ["gcc", "-shared", "-fPIC", "-O1", "-w", "cooling.c", "-lm", "-o", library]
     subprocess.run(command, cwd=folder, check=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 import cooling_fmu
 import numpy as np
 import pytest
-from cooling_fmu import DESCRIPTION, EXPERIMENT
+from cooling_fmu import DESCRIPTION, DESCRIPTION_3, EXPERIMENT
 from own_machines import opened
 from own_study import own_study
 
@@ -73,6 +73,34 @@ def test_an_fmu_alone_has_its_own_parameters_and_outputs(uq, body, folder):
     assert "0 to 50" in shown and "label" not in shown
     left = {"body.fmu", "body.toml", "own.toml", "own.nc"}
     assert {path.name for path in folder.iterdir()} == left
+
+
+def test_an_fmu_of_fmi_3_has_the_rows_of_fmi_2(uq, body, folder, library):
+    _, ds = run(uq, "body.fmu", name="body_rate")
+    cooling_fmu.write(folder / "body.fmu", library, DESCRIPTION_3)
+    ended, new = run(uq, "body.fmu", "--fresh", name="body_rate")
+    assert ended.err == ""
+    assert (new["T"] == ds["T"]).all() and (new["steps"] == 400).all()
+    assert new["T"].attrs["units"] == new["T0"].attrs["units"] == "K"
+    assert new.attrs["model_version"] == "FMI 3.0"
+    shown = uq("models", "body.fmu").out
+    assert "0 to 50" in shown and not {"field", "count", "tick", "time"} & set(shown.split())
+
+
+def test_a_fault_of_an_fmu_of_fmi_3_is_one_sentence(uq, body, folder, library):
+    cooling_fmu.write(folder / "body.fmu", library, DESCRIPTION_3)
+    _, ds = run(uq, "body.toml", "--samples", "2", name="fault", lower=0.5, upper=1.5)
+    words = "fmi3DoStep failed with status 3 (error). (no heat is left); see "
+    assert words in ds["status"].attrs["example_raised"]
+
+
+def test_an_array_of_an_fmu_is_refused_in_one_line(uq, body, folder, library):
+    cooling_fmu.write(folder / "body.fmu", library, DESCRIPTION_3)
+    text = MACHINE.replace("[outputs.steps]", '[outputs.steps]\nvariable = "field"')
+    (folder / "body.toml").write_text(text)
+    ended = uq("models", "body.toml")
+    assert ended.code == 2 and ended.err.count("\n") == 1
+    assert 'steps.variable = "field": is an array; let the FMU declare' in ended.err
 
 
 def test_variables_are_reduced_over_time(uq, body):
@@ -191,19 +219,19 @@ def test_a_mistake_in_a_machine_file_is_one_line(uq, body, folder, change):
 
 
 TWICE = DESCRIPTION.replace('"T0"', '"body_rate"')
-NEW = """<fmiModelDescription fmiVersion="3.0" modelName="Body" instantiationToken="{{body}}">
-  <CoSimulation modelIdentifier="body"/>{experiment}<ModelVariables>
-    <Float64 name="T" valueReference="3" causality="output"/><Clock name="tick"/>
-  </ModelVariables><ModelStructure/></fmiModelDescription>"""
+ONLY_SCHEDULED = DESCRIPTION_3.replace("CoSimulation", "ScheduledExecution")
 ODD_STEP = EXPERIMENT.replace("0.01", "0.03")
 BAD = {
     "no archive": (None, "not an FMU: BadZipFile"),
     "no description": ({"description": "<x/>"}, "not an FMU"),
     "of FMI 1.0": (
         {"description": DESCRIPTION.replace('fmiVersion="2.0"', 'fmiVersion="1.0"')},
-        "is of FMI 1.0, not 2.0; export it as such",
+        "is of FMI 1.0, not 2.0 or 3.0; export it as such",
     ),
-    "of FMI 3.0": ({"description": NEW}, "is of FMI 3.0, not 2.0; export it as such"),
+    "scheduled only": (
+        {"description": ONLY_SCHEDULED},
+        "is neither for co-simulation nor for model exchange",
+    ),
     "for elsewhere": ({"platform": "win64"}, "has no binary for linux64 (there: none)"),
     "two of a name": (
         {"description": TWICE},
