@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.stats import kurtosis
 
 from uq.assess.fact import Fact
 from uq.contract import Floats, Output, cause_name, censored_name
@@ -30,7 +29,14 @@ from uq.machines.emulator import (
 )
 from uq.result.elements import flags
 from uq.result.result import AnyResult, Result
-from uq.stats.regressions import PROCESS, Regression, openturns, regress, scale_of
+from uq.stats.regressions import (
+    PROCESS,
+    Regression,
+    openturns,
+    regress,
+    scale_of,
+    standard_moment,
+)
 from uq.study.definition import study_from_text
 from uq.study.installed_models import SUFFIX, find_model
 from uq.study.provenance import __version__
@@ -47,7 +53,7 @@ LARGEST_ERROR = 1 / 3
 """Largest error of an emulator, of the standard deviation of the output."""
 
 _LARGEST_OF_A_ROW = 0.5  # largest error of a row, of the standard deviation of the output
-_FLAT = 1.0  # excess kurtosis of errors below which they look like noise
+_FLAT = 4.0  # kurtosis of errors below which they look like noise; 3 of a normal law
 _MOST_ELEMENTS = 50
 _RATIO = 10.0  # of largest to smallest value from which logarithms are fitted
 
@@ -263,7 +269,7 @@ def _check(regression: Regression) -> None:
         )
     z = np.array(regression.errors)
     largest = float(np.abs(z).max() / z.std()) * error if z.std() else 0.0
-    if largest > _LARGEST_OF_A_ROW and kurtosis(z) > _FLAT:
+    if largest > _LARGEST_OF_A_ROW and standard_moment(z, 4) > _FLAT:
         raise _Refused(
             f"a row is missed by {percent(largest)} of the standard deviation of the output, the"
             f" others by {percent(error)}: the output jumps, or is too steep for these rows"

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import kurtosis, skew
 
 from uq.contract import Floats
 from uq.errors import InputError
@@ -27,7 +26,7 @@ _FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estima
 _DEGREE = 16
 _ROWS_PER_TERM = (4.0, 2.0, 1.0, 0.5)  # among which terms are selected
 _RATIO = 3.0  # of largest to smallest value from which logarithms may be used
-_FLAT = -0.8  # excess kurtosis below which a column counts as uniform; -1.2 of a uniform law
+_FLAT = 2.2  # kurtosis below which a column counts as uniform; 1.8 of a uniform law
 
 Predict = Callable[[Floats], tuple[Floats, Floats]]
 """Scaled inputs, shape (n, d) -> means, and standard deviations up to a factor, shape (n,) each."""
@@ -78,15 +77,20 @@ class Scale(NamedTuple):
             return ((np.log(values) if self.logarithmic else values) - self.centre) / self.half
 
 
+def standard_moment(values: Floats, power: int) -> float:
+    """Return a moment of standardised values: skewness (3) or kurtosis (4)."""
+    return float(np.mean(((values - values.mean()) / values.std()) ** power))
+
+
 def scale_of(name: str, values: Floats) -> Scale:
     """Return the scale of an input by its values in the rows, which are not all equal."""
     logarithmic = bool(
         values.min() > 0
         and values.max() > _RATIO * values.min()
-        and abs(float(skew(np.log(values)))) < abs(float(skew(values)))
+        and abs(standard_moment(np.log(values), 3)) < abs(standard_moment(values, 3))
     )
     column = np.log(values) if logarithmic else values
-    uniform = bool(kurtosis(column) < _FLAT)
+    uniform = standard_moment(column, 4) < _FLAT
     low, high = float(column.min()), float(column.max())
     centre, half = (
         ((low + high) / 2, (high - low) / 2)

@@ -34,7 +34,7 @@ from uq.study.file import (
     Tied,
 )
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
-from uq.study.installed_models import find_model, model_at
+from uq.study.installed_models import SUFFIX, find_model, model_at
 from uq.study.reading import in_units_of, parse, shape_faults, sound_entries, with_numbers
 from uq.text.literals import read_toml, shown
 from uq.text.numbers import counted
@@ -263,6 +263,8 @@ def study_from_text(
             else:
                 of_model = [InputFault(("study", "model"), line, reference) for line in error.lines]
     if study_model is not None:
+        if model and model.endswith(SUFFIX) and _leave_out(data, study_model):
+            text = study_text(data)
         misfits = in_units_of(study_model, data)
         text = with_numbers(text, data)
     faults = [
@@ -315,6 +317,25 @@ def study_from_text(
         dependence=file.dependence,
         imported=imported,
     )
+
+
+def _leave_out(data: dict[str, Any], emulated: Model) -> bool:
+    """Leave out the entries of [analysis] on outputs without an emulator; return if there are any.
+
+    The twin of the emulated model goes, too: no emulator computes one alone.
+    """
+    analysis, refused = data.get("analysis"), emulated.batch.emulator.refused  # type: ignore[attr-defined]
+    if not isinstance(analysis, dict):
+        return False
+    before = json.dumps(analysis, default=str)
+    analysis.pop("twin", None)
+    for key in ("outputs", "thresholds", "joint_bounds"):
+        match analysis.get(key):
+            case list() as names:
+                analysis[key] = [name for name in names if name not in refused]
+            case dict() as entries:
+                analysis[key] = {k: v for k, v in entries.items() if k not in refused}
+    return json.dumps(analysis, default=str) != before
 
 
 def _model_named(data: Mapping[str, Any]) -> str | None:

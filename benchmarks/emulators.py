@@ -1,0 +1,220 @@
+"""Emulators of functions with known answers, beside plain rows, OpenTURNS alone and scikit-learn.
+
+``python -m benchmarks.emulators [REPETITIONS]`` prints two tables: errors of predictions, and the
+coverage and width of intervals, from as many repetitions with 100 rows, half of them with 200 and a
+quarter with 400. scikit-learn is left out where it is not installed.
+"""
+
+import sys
+from functools import cache
+from importlib.util import find_spec
+
+import numpy as np
+import openturns as ot
+from scipy.special import ndtri
+from scipy.stats import qmc
+
+from uq.indices.expansions import chaos_indices
+from uq.indices.index import S1, ST
+from uq.indices.method import DesignSample
+from uq.stats.control_variate import controlled_mean, controlled_share
+from uq.stats.estimate import Estimate
+from uq.stats.intervals import mean_interval, share_interval
+from uq.stats.moments import moments
+from uq.stats.regressions import FOLDS, Predictor, regress, scale_of
+
+ROWS = (100, 200, 400)
+NEW = 2000
+MANY = 20_000
+EXACT = 2**19
+
+
+def ishigami(x):
+    """Return Ishigami's function of x pi."""
+    x1, x2, x3 = np.pi * x.T
+    return np.sin(x1) + 7 * np.sin(x2) ** 2 + 0.1 * x3**4 * np.sin(x1)
+
+
+def g_function(x):
+    """Return the g-function with a kink in each input."""
+    return np.prod([(abs(2 * x[:, i]) + a) / (1 + a) for i, a in enumerate((0, 1, 4.5, 9))], 0)
+
+
+def ratio(x):
+    """Return a smooth ratio of two uniform inputs, times an exponential of a normal one."""
+    return (2 + x[:, 0]) / (1.5 + x[:, 1]) ** 2 * np.exp(0.3 * x[:, 2])
+
+
+def product(x):
+    """Return a lognormal product with an interaction."""
+    return np.exp(0.5 * x[:, 0] + 0.3 * x[:, 1] - 0.2 * x[:, 2] * x[:, 3])
+
+
+def noisy(x):
+    """Return a sum with noise that no input explains: 5 % of the variance."""
+    bits = np.ascontiguousarray(x).view(np.uint64).sum(axis=1) * np.uint64(0x9E3779B97F4A7C15)
+    u = ((bits ^ (bits >> np.uint64(31))) >> np.uint64(11)) * 2.0**-53
+    return x[:, 0] + x[:, 1] ** 2 + (u - 0.5) * 0.5
+
+
+def jump(x):
+    """Return a slope with a jump across a curve."""
+    return x[:, 0] + 1.5 * (x[:, 1] > x[:, 2] ** 2 - 0.3)
+
+
+UNIFORM, NORMAL = "uniform", "normal"
+FUNCTIONS = {
+    ishigami: (UNIFORM,) * 3,
+    g_function: (UNIFORM,) * 4,
+    ratio: (UNIFORM, UNIFORM, NORMAL),
+    product: (NORMAL,) * 5,
+    noisy: (UNIFORM,) * 3,
+    jump: (UNIFORM,) * 3,
+}
+"""Function -> laws of its inputs, on [-1, 1] or standard normal."""
+
+
+def inputs(laws, u):
+    """Return inputs of points of the unit cube."""
+    columns = [2 * c - 1 if law == UNIFORM else ndtri(c) for law, c in zip(laws, u.T, strict=True)]
+    return np.column_stack(columns)
+
+
+@cache
+def truth(function):
+    """Return mean, 95 % quantile and Sobol' indices by quasi-Monte Carlo."""
+    laws = FUNCTIONS[function]
+    d = len(laws)
+    u = np.clip(qmc.Sobol(2 * d, seed=1).random(EXACT), 1e-12, 1 - 1e-12)
+    a, b = inputs(laws, u[:, :d]), inputs(laws, u[:, d:])
+    ya, yb = function(a), function(b)
+    both = np.concatenate([ya, yb])
+    first, total = [], []
+    for i in range(d):
+        mixed = a.copy()
+        mixed[:, i] = b[:, i]
+        yc = function(mixed)
+        first.append(float(np.mean((yb - both.mean()) * (yc - ya)) / both.var()))
+        total.append(float(np.mean((ya - yc) ** 2) / 2 / both.var()))
+    return float(both.mean()), float(np.quantile(both, 0.95)), first, total
+
+
+def scikit_learn(x, y, new):
+    """Return the predictions of scikit-learn's Gaussian process, a Matern 5/2 kernel."""
+    from sklearn.gaussian_process import GaussianProcessRegressor
+    from sklearn.gaussian_process.kernels import ConstantKernel, Matern
+
+    kernel = ConstantKernel(1.0) * Matern(np.ones(x.shape[1]), (1e-2, 1e2), nu=2.5)
+    model = GaussianProcessRegressor(kernel, normalize_y=True, alpha=1e-8)
+    return model.fit(x, y).predict(new)
+
+
+def openturns_alone(x, y, new):
+    """Return the predictions of OpenTURNS' polynomial chaos with its default choices."""
+    algorithm = ot.FunctionalChaosAlgorithm(ot.Sample(x), ot.Sample(y[:, None]))
+    algorithm.run()
+    return np.array(algorithm.getResult().getMetaModel()(ot.Sample(new)))[:, 0]
+
+
+def fitted(x, y):
+    """Return the regression, scaled inputs, parts and laws that `uq emulate` uses."""
+    scales = [scale_of(str(i), column) for i, column in enumerate(x.T)]
+    z = np.column_stack([scale(column) for scale, column in zip(scales, x.T, strict=True)])
+    uniform = tuple(scale.uniform for scale in scales)
+    parts = np.arange(len(y)) % FOLDS
+    regression = regress(z, y, np.arange(len(y)), parts, uniform)
+    predictor = Predictor(regression, z, parts, uniform)
+
+    def scaled(new):
+        pairs = zip(scales, new.T, strict=True)
+        return np.column_stack([scale(np.ascontiguousarray(c)) for scale, c in pairs])
+
+    return regression, predictor, scaled, parts
+
+
+def errors(repetitions):
+    """Print the errors of predictions over the standard deviation of the output."""
+    peers = {"OpenTURNS alone": openturns_alone}
+    if find_spec("sklearn"):
+        peers["scikit-learn"] = scikit_learn
+    print("| function | rows | kind | stated | true |", *(f" {p} |" for p in peers), sep="")
+    print("|---|---|---|---|---|" + "---|" * len(peers))
+    for function, laws in FUNCTIONS.items():
+        for n in ROWS:
+            table, kinds = [], []
+            for seed in range(repetitions * ROWS[0] // n):
+                rng = np.random.default_rng((seed, n))
+                x, new = (inputs(laws, rng.random((k, len(laws)))) for k in (n, NEW))
+                y, expected = function(x), function(new)
+                regression, predictor, scaled, _ = fitted(x, y)
+                predictions = [predictor(scaled(new))[0], *(p(x, y, new) for p in peers.values())]
+                true = [np.sqrt(np.mean((p - expected) ** 2)) / expected.std() for p in predictions]
+                table.append([regression.error_sd / y.std(), *true])
+                kinds.append(regression.kind)
+            most = max(set(kinds), key=kinds.count)
+            cells = " | ".join(f"{100 * error:.2g} %" for error in np.median(table, axis=0))
+            print(f"| {function.__name__} | {n} | {most} | {cells} |", flush=True)
+
+
+def coverage(repetitions):
+    """Print how often intervals cover, and their median width beside that of the rows alone."""
+    heads = ("mean", "P(y > 95 %)", "S1, largest", "ST, largest")
+    print("| function | rows |", *(f" {head} |" for head in heads), sep="")
+    print("|---|---|" + "---|" * len(heads))
+    for function, laws in FUNCTIONS.items():
+        mean, limit, first, total = truth(function)
+        for n in ROWS:
+            held, widths = [], []
+            for seed in range(repetitions * ROWS[0] // n):
+                rng = np.random.default_rng((seed, n, 1))
+                x, many = (inputs(laws, rng.random((k, len(laws)))) for k in (n, MANY))
+                y = function(x)
+                by_twin, alone = with_emulator(x, y, many, limit)
+                names = [str(i) for i in range(len(laws))]
+                sample = DesignSample.plain(
+                    y,
+                    dict(zip(names, x.T, strict=True)),
+                    normal={
+                        name: (lambda v: ndtri((v + 1) / 2)) if law == UNIFORM else (lambda v: v)
+                        for name, law in zip(names, laws, strict=True)
+                    },
+                )
+                indices = chaos_indices(sample).values
+                largest = str(int(np.argmax(total)))
+                both = [indices[S1][largest], indices[ST][largest]]
+                exact = [mean, 0.05, max(first), max(total)]
+                exact[2] = first[int(largest)]
+                held.append(
+                    [e.low <= t <= e.high for e, t in zip([*by_twin, *both], exact, strict=True)]
+                )
+                widths.append([e.high - e.low for e in (*by_twin, *alone, *both)])
+            share, width = np.mean(held, axis=0), np.median(widths, axis=0)
+            cells = [
+                f"{100 * share[0]:.0f} %, {width[0] / width[2]:.2f} as wide",
+                f"{100 * share[1]:.0f} %, {width[1] / width[3]:.2f} as wide",
+                f"{100 * share[2]:.0f} %, {width[4]:.2g} wide",
+                f"{100 * share[3]:.0f} %, {width[5]:.2g} wide",
+            ]
+            print(f"| {function.__name__} | {n} | {' | '.join(cells)} |", flush=True)
+
+
+def with_emulator(x, y, many, limit):
+    """Return mean and share beyond a limit with an emulator as control variate, and without."""
+    _, predictor, scaled, parts = fitted(x, y)
+    here = predictor.cross_fitted(scaled(x), parts)
+    there = predictor.cross_fitted(scaled(many), np.arange(len(many)) % FOLDS)
+    kept, hits = np.ones(len(y), bool), y > limit
+    controls = [np.stack([c, np.zeros(len(c))], axis=1) for c in (here, there)]
+    mean = controlled_mean(y, kept, controls=controls[0], many=controls[1])[0]
+    share = controlled_share(hits, kept, control=here, many=there)[0]
+    alone = moments(y).mean
+    if not alone.has_interval:
+        alone = Estimate(alone.value, *mean_interval(y))
+    return (mean, share), (alone, Estimate(hits.mean(), *share_interval(hits)))
+
+
+if __name__ == "__main__":
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    errors(max(count // 5, 5))
+    print()
+    coverage(count)
