@@ -21,6 +21,7 @@ from .execution.loading import load_study as load_study
 from .execution.recomputation import recompute as recompute
 from .execution.runner import run as run
 from .explore.basins import basins as basins
+from .explore.next_rows import next_rows as next_rows
 from .explore.rare_events import rare_event as rare_event
 from .explore.single_rows import row as row
 from .explore.single_rows import simulate as simulate

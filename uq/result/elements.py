@@ -19,8 +19,10 @@ from uq.result.nesting import is_nested, nesting_of
 from uq.result.result_file import failed, refuse_empty
 from uq.result.variables import outputs_of
 from uq.result.weights import (
+    INDEPENDENT_ROUNDS,
     LAW_INFLUENCE,
     LAW_TERMS,
+    ROUND,
     ROWS,
     has_rounds,
     largest_weight,
@@ -103,7 +105,7 @@ def _shared_influence(rows: xr.Dataset, labels: NDArray[np.integer]) -> SharedIn
 def has_independent_samples(ds: xr.Dataset) -> bool:
     """Whether samples are independent, however many rows each has."""
     if has_rounds(ds):
-        return False
+        return bool(ds[ROUND].attrs.get(INDEPENDENT_ROUNDS))
     design = DESIGNS[ds.attrs["design"]]
     return design.independent or (
         design.imported and study_of_result(ds.attrs["study"]).design.independent

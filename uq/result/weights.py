@@ -47,6 +47,9 @@ IMPORTANCE, ROUND = "importance", "round"
 """Variables of each row, if a sampler has added rows to a design: prior importance weight, with
 expectation 1; and the sampling round, 0 for rows of the design."""
 
+INDEPENDENT_ROUNDS = "independent"
+"""Attribute of the round: each added row was drawn independently, from a density that was fixed."""
+
 OWN_SIZE = "own_samples_and_replicates"
 """Attribute of a result: samples and replicates of the design, without added rows."""
 
@@ -147,9 +150,11 @@ def refuse_if_weighted(ds: xr.Dataset, question: str) -> None:
         When rows have weights.
     """
     if has_weights(ds):
+        by, verb = "inspections have weighted", "update"
+        if has_rounds(ds) and ds[ROUND].attrs.get(INDEPENDENT_ROUNDS):
+            by, verb = "have weights", "extend --next"
         raise InputError(
-            f"{question}: not with rows that inspections have weighted; ask it of the result before"
-            " 'uq update'"
+            f"{question}: not with rows that {by}; ask it of the result before 'uq {verb}'"
         )
 
 

@@ -236,6 +236,20 @@ def _process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, 
     return predict
 
 
+def process_at(z: Floats, y: Floats, at: Floats) -> tuple[Floats, Floats]:
+    """Return means and standard deviations of a Gaussian process of rows at points, (n,) each.
+
+    Parameters
+    ----------
+    z : ndarray, shape (rows, d)
+    y : ndarray, shape (rows,)
+        Standardised.
+    at : ndarray, shape (n, d)
+    """
+    uniform = (False,) * z.shape[1]
+    return _process(fit_process(z, y, uniform), z, y, uniform)(at)
+
+
 CHAOS, PROCESS = "polynomial-chaos", "gaussian-process"
 
 _KINDS = {CHAOS: (fit_chaos, _chaos), PROCESS: (fit_process, _process)}

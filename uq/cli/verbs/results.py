@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,6 +15,9 @@ from uq.cli import options as given
 from uq.errors import InputError
 from uq.execution.options import RunOptions
 from uq.text.literals import plain_line
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _LARGEST = 20_000_000  # bytes: their checksum takes a small part of the time of a summary
 
@@ -26,9 +29,53 @@ def status(result: given.ResultFile, json: given.Json = False) -> None:
     status.status(result, json)
 
 
+_Aimed = Annotated[
+    str,
+    typer.Option(
+        "--output",
+        metavar="NAME",
+        help="Learn this output; without it, fill the space.",
+        autocompletion=completion.complete_output,
+    ),
+]
+_Near = Annotated[float | None, typer.Option(metavar="Y", help="Learn which rows are beyond Y.")]
+
+
+def next_rows(
+    result: given.ResultFile,
+    number: Annotated[int, typer.Option("-n", "--rows", min=1, metavar="N", help="How many.")] = 20,
+    output: _Aimed = "",
+    near: _Near = None,
+    model: given.ModelReference = None,
+    json: given.Json = False,
+) -> None:
+    """Propose the rows to compute next; 'uq extend --next N' computes them."""
+    from uq.cli import printing
+    from uq.explore import next_rows as proposal
+
+    table = proposal.next_rows(result, number, output, near, model)
+    if json:
+        printing.print_json({name: column.tolist() for name, column in table.items()})
+        return
+    cells = [[f"{value:.6g}" for value in row] for row in table.to_numpy()]
+    printing.grid([(str(i), *row) for i, row in enumerate(cells)], header=("", *table.columns))
+    printing.note("weight: how much the row counts, against 1 of a row of the study")
+
+
 def extend(
     result: given.ResultFile,
-    samples: Annotated[int, typer.Option(min=1, metavar="N", help="Total number of samples.")],
+    samples: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Total number of samples.")
+    ] = None,
+    next_: Annotated[
+        int | None,
+        typer.Option("--next", min=1, metavar="N", help="Add rows where they teach most."),
+    ] = None,
+    into: Annotated[
+        Path | None, typer.Option("-o", metavar="NEW.nc", help="With --next: where to write.")
+    ] = None,
+    output: _Aimed = "",
+    near: _Near = None,
     workers: given.Workers = None,
     scheduler: given.Scheduler = None,
     row_limit: given.RowLimit = None,
@@ -41,8 +88,39 @@ def extend(
     from uq.execution import amending
 
     options = RunOptions(workers, scheduler, row_limit=row_limit, mixed=mixed)
+    if next_ is not None:
+        if samples is not None or into is None:
+            raise InputError("uq extend: --next N needs -o NEW.nc, and excludes --samples")
+        return _by_next(result, next_, (output, near), into, model, options, quiet)
+    if samples is None or into or output or near is not None:
+        raise InputError("uq extend: add --samples N, or --next N -o NEW.nc")
     action = partial(amending.extend, result, samples, model)
     return amended(result, model, quiet, options, action)
+
+
+def _by_next(
+    result: Path,
+    rows: int,
+    aim: tuple[str, float | None],
+    into: Path,
+    model: str | None,
+    options: RunOptions,
+    quiet: bool,
+) -> int:
+    from uq.cli.run import carried_out
+    from uq.cli.summary_tables import show_card
+    from uq.explore.next_rows import Aim, extend_by_next
+    from uq.result.result import Result
+
+    opened = Result.open(result)
+
+    def action(options: RunOptions) -> "xr.Dataset":
+        return extend_by_next(opened, rows, Aim(*aim), into, model, options)
+
+    _, note = carried_out(into, quiet, options, action)
+    if not quiet:
+        show_card(into, [note])
+    return 0
 
 
 def rerun(

@@ -1,0 +1,115 @@
+"""Next rows: drawn where they teach most, and weighted so that means have no bias."""
+
+import numpy as np
+import pytest
+from computed import as_text, computed, study_of
+from scipy.special import ndtr
+
+import uq as api
+from uq.errors import InputError
+from uq.explore.next_rows import Aim, _proposed, _study_of
+from uq.result.result import Result
+
+SIGNS = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
+TABLES = {
+    "study": {"name": "waves", "model": "ishigami"},
+    "uncertain": dict.fromkeys(("x1", "x2", "x3"), SIGNS),
+    "analysis": {"thresholds": {"y": 10.0}},
+}
+
+
+def design(samples=120, seed=1, **more):
+    return {"design": {"method": "monte-carlo", "samples": samples, "seed": seed} | more}
+
+
+def waves(samples=120, seed=1, **more):
+    return computed(study_of(TABLES | design(samples, seed, **more)))
+
+
+def of_waves(x1, x2, x3):
+    return np.sin(x1) + 7 * np.sin(x2) ** 2 + 0.1 * x3**4 * np.sin(x1)
+
+
+def test_rows_near_a_limit_have_values_near_it_and_small_weights():
+    ds = waves(200)
+    table = api.next_rows(ds, 40, "y", near=10.0)
+    assert list(table.columns) == ["x1", "x2", "x3", "weight"]
+    y = of_waves(*table[["x1", "x2", "x3"]].to_numpy().T)
+    near = abs(y - 10) < 3
+    assert near.mean() > 3 * float((abs(ds["y"] - 10) < 3).mean())
+    assert table["weight"].to_numpy()[near].mean() < 0.8
+    again = api.next_rows(ds, 40, "y", near=10.0)
+    assert again.equals(table)
+
+
+def test_rows_that_fill_the_space_are_far_from_the_others():
+    ds = waves(60)
+    rows = np.column_stack([ds[name] for name in ("x1", "x2", "x3")])
+
+    def distance(points):
+        apart = np.linalg.norm(points[:, None] - rows, axis=2)
+        return np.where(apart == 0, np.inf, apart).min(axis=1).mean()
+
+    table = api.next_rows(ds, 50)
+    assert distance(table[["x1", "x2", "x3"]].to_numpy()) > 1.1 * distance(rows)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("aim", [Aim(), Aim("y"), Aim("y", 10.0)])
+def test_weighted_means_have_no_bias(aim):
+    """Of 60 results of 100 rows and 50 next ones, against 3.5 and P(y > 10) = 0.0336."""
+    means, shares, totals = [], [], []
+    for seed in range(60):
+        result = Result(waves(100, seed))
+        study = _study_of(result, None)
+        scores, weights = _proposed(result, study, 50, aim)
+        new = of_waves(*(2 * np.pi * ndtr(scores) - np.pi).T)
+        y = np.concatenate([result.dataset["y"].values, new])
+        means.append(np.mean(weights * y))
+        shares.append(np.mean(weights * (y > 10)))
+        totals.append(weights.mean())
+    for estimates, truth in ((means, 3.5), (shares, 0.0336), (totals, 1.0)):
+        error = np.std(estimates, ddof=1) / np.sqrt(len(estimates))
+        assert abs(np.mean(estimates) - truth) < 3 * error
+
+
+def test_extend_adds_them_in_rounds_with_weights(uq, tmp_path):
+    (tmp_path / "waves.toml").write_text(as_text(TABLES | design()))
+    uq("run", tmp_path / "waves.toml", "-o", "a.nc", "--quiet")
+    first = uq("extend", "a.nc", "--next", 30, "--output", "y", "--near", 10, "-o", "b.nc")
+    assert first.code == 0 and "30 rows computed" in first.out, first.err
+    proposed = api.next_rows("a.nc", 30, "y", near=10.0)
+    ds = api.open_result("b.nc")
+    assert ds.sizes["row"] == 150
+    assert np.array_equal(ds["x2"].values[120:], proposed["x2"])
+    assert ds["weight"].values[120:] == pytest.approx(proposed["weight"])
+    assert np.array_equal(ds["y"].values[:120], api.open_result("a.nc")["y"])
+    assert uq("extend", "b.nc", "--next", 20, "-o", "c.nc", "--quiet").code == 0
+    three = api.open_result("c.nc")
+    assert three["round"].values.tolist() == [0] * 120 + [1] * 30 + [2] * 20
+    assert three["weight"].values.mean() == pytest.approx(1.0, abs=0.1)
+    line = api.summary(three).loc["y"]
+    assert abs(line["mean"] - 3.5) < 1.5
+    assert not list(tmp_path.glob("*next*"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--next", 20), "--next N needs -o NEW.nc"),
+        (("--next", 2, "-o", "b.nc"), "2 must be between 5 and"),
+        (("--next", 20, "-o", "b.nc", "--output", "z"), "no such output 'z'"),
+        ((), "add --samples N, or --next N -o NEW.nc"),
+    ],
+)
+def test_mistakes_are_one_line(uq, tmp_path, arguments, words):
+    (tmp_path / "waves.toml").write_text(as_text(TABLES | design(40)))
+    uq("run", tmp_path / "waves.toml", "-o", "a.nc", "--quiet")
+    ended = uq("extend", "a.nc", *arguments)
+    assert ended.code == 2 and words in ended.err and ended.err.count("\n") == 1
+
+
+def test_dependent_rows_are_refused():
+    ds = waves(64, method="sobol")
+    with pytest.raises(InputError, match="need independent rows drawn from laws"):
+        api.next_rows(ds, 10)

@@ -1,0 +1,275 @@
+"""Next rows: where a result of few rows gains most, drawn at random so that weights stay right."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from numpy.typing import NDArray
+from scipy import special
+
+from uq.contract import Floats
+from uq.errors import InputError, choices
+from uq.execution.options import DEFAULTS, RunOptions, ignore
+from uq.execution.recomputation import study_here
+from uq.execution.runner import run_study
+from uq.explore.new_rows import with_given_rows
+from uq.files.whole_files import check_target, write_result
+from uq.learning.importance import own_rows, with_rounds
+from uq.result.result import AnyResult, Result
+from uq.result.weights import INDEPENDENT_ROUNDS, MOST, ROUND, WEIGHT
+from uq.sampling.unit_cube import hashed
+from uq.stats.regressions import process_at, scale_of
+from uq.study.definition import Study
+from uq.study.row_sampling import physical
+
+POOL = 8192
+"""Rows drawn from the laws of the study, among which the next rows are chosen."""
+
+PARTS = 5
+"""Number of parts of the rows: proposals of a part are made from the rows of the others."""
+
+_MOST_LEARNT = 400
+_LEAST = 1e-12
+_SEED = 29
+
+
+class Aim(NamedTuple):
+    """What the next rows are for.
+
+    Attributes
+    ----------
+    output : str
+        Element whose variance is to be learnt; "" to fill the space of the inputs.
+    near : float or None
+        Value of the output near which rows are wanted: the limit of an event.
+    """
+
+    output: str = ""
+    near: float | None = None
+
+
+def next_rows(
+    result: AnyResult,
+    rows: int,
+    output: str = "",
+    near: float | None = None,
+    model: str | None = None,
+) -> pd.DataFrame:
+    """Propose the rows to compute next.
+
+    Parameters
+    ----------
+    result : Result, xarray.Dataset or path
+        Of independent rows, perhaps with earlier next rows.
+    rows : int
+        Number of rows.
+    output : str, optional
+        Element of an output, such as ``life[depth=0.00025]``: rows where a Gaussian process of it
+        is uncertain. Without it, rows that are far from all others.
+    near : float, optional
+        Value of the output: rows of which it is uncertain on which side they are.
+    model : str, optional
+        Where a model that is not installed lives, as for `load_study`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Uncertain inputs, and the ``weight`` of each row. `uq extend OUT.nc --next N` computes the
+        same rows.
+
+    Raises
+    ------
+    InputError
+        When rows of such a result are not independent, or the output has no numbers.
+
+    Notes
+    -----
+    Rows are drawn at random, from a density a(x) times that of the laws, where a is the variance of
+    a Gaussian process, the probability that it errs on the side of the limit, or the volume around
+    a row. The rows are divided into five parts; for each, a is made from the rows of the others,
+    and a fifth of the next rows is drawn. Within a part, rows of the study and next rows are
+    weighted by the mixture of their densities (balance heuristic) [1]_. As a does not depend on the
+    rows of the part, weighted means have no bias.
+
+    References
+    ----------
+    .. [1] E. Veach, L. J. Guibas, "Optimally combining sampling techniques for Monte Carlo
+       rendering", SIGGRAPH 95, 419-428 (1995).
+    """
+    result = Result.of(result)
+    study = _study_of(result, model)
+    scores, weights = _proposed(result, study, rows, Aim(output, near))
+    x = physical(study, special.ndtr(scores))
+    names = study.model.parameter_names
+    columns = {name: x[:, names.index(name)] for name in study.uncertain}
+    return pd.DataFrame(columns).assign(weight=weights[len(result) :])
+
+
+def extend_by_next(
+    result: Result,
+    rows: int,
+    aim: Aim,
+    path: Path,
+    model: str | None = None,
+    options: RunOptions = DEFAULTS,
+) -> xr.Dataset:
+    """Compute the rows of `next_rows`, and write the result with all rows and their weights.
+
+    Parameters
+    ----------
+    result, rows, aim, model
+        As for `next_rows`.
+    path : Path
+        File to write, another than that of the result.
+    options : RunOptions
+    """
+    check_target(path, 0)
+    study = _study_of(result, model)
+    scores, weights = _proposed(result, study, rows, aim)
+    seed = np.random.SeedSequence((study.design.seed, _SEED, len(result))).generate_state(1)
+    given = with_given_rows(study, scores, "next rows", int(seed[0]))
+    part = path.with_name(f"{path.stem}-next-{len(result)}.nc")
+    new = run_study(given, part, replace(options, say=ignore))  # hints are for studies of users
+    rounds = [result.take(result.dataset[ROUND].values == k + 1) for k in range(len(_aims(result)))]
+    study_rows = own_rows(result).dataset.drop_vars(WEIGHT, errors="ignore")
+    combined = with_rounds(
+        Result(study_rows),
+        [*(earlier.dataset for earlier in rounds), new],
+        np.log(weights),
+        np.zeros(len(weights), np.int32),
+    )
+    combined[ROUND].attrs |= {INDEPENDENT_ROUNDS: 1, _AIMS: json.dumps([*_aims(result), aim])}
+    attrs = {"role": WEIGHT, "units": "1", MOST: float(weights.max() / weights.mean())}
+    attrs["long_name"] = "density of the laws over that of the mixture from which rows were drawn"
+    combined = combined.assign({WEIGHT: ("row", weights, attrs)})
+    write_result(combined, path)
+    part.unlink(missing_ok=True)
+    return combined
+
+
+_AIMS = "aims"
+"""Attribute of the round: what the rows of each round were for, in JSON."""
+
+
+def _aims(result: Result) -> list[Aim]:
+    """Return the aim of each round of next rows so far."""
+    if not result.has_rounds:
+        return []
+    return [Aim(*aim) for aim in json.loads(result.dataset[ROUND].attrs[_AIMS])]
+
+
+def _study_of(result: Result, model: str | None) -> Study:
+    """Return the study of a result whose rows are independent and have no other weights.
+
+    Raises
+    ------
+    InputError
+    """
+    if result.has_weights and not (result.has_rounds and result.has_independent_samples):
+        raise InputError("next rows: not with rows that inspections have weighted")
+    if not result.has_independent_samples or result.is_nested or result.design.imported:
+        raise InputError(
+            "next rows: need independent rows drawn from laws, not those of a"
+            f" '{result.design_name}' design"
+        )
+    attrs = own_rows(result).dataset.attrs
+    recorded = attrs["study"], attrs["study_identity"], attrs["model_version"]
+    study, change = study_here(*recorded, int(attrs["samples"]), "result", model)
+    if change:
+        raise InputError(f"the result was computed with another model ({change}): run it again")
+    return study
+
+
+def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats, Floats]:
+    """Return the normal scores of the next rows, and the weights of all rows, new ones last.
+
+    Returns
+    -------
+    scores : ndarray, shape (rows, d)
+    weights : ndarray, shape (len(result) + rows,)
+    """
+    if not PARTS <= rows <= POOL // 8:
+        raise InputError(f"next rows: {rows} must be between {PARTS} and {POOL // 8}")
+    names, aims = list(study.uncertain), [*_aims(result), aim]
+    values = np.column_stack([result.dataset[name].values for name in names]).astype(float)
+    scales = [scale_of(name, column) for name, column in zip(names, values.T, strict=True)]
+    rng = np.random.default_rng((study.design.seed, _SEED, len(result)))
+    pool = rng.standard_normal((POOL, len(names)))
+    x = physical(study, special.ndtr(pool))
+    columns = [study.model.parameter_names.index(name) for name in names]
+
+    def scaled(table: Floats) -> Floats:
+        pairs = zip(scales, table.T, strict=True)
+        return np.column_stack([scale(np.ascontiguousarray(column)) for scale, column in pairs])
+
+    z, z_pool = scaled(values), scaled(x[:, columns])
+    rounds = result.dataset[ROUND].values if result.has_rounds else np.zeros(len(result), int)
+    part = (hashed(values) % np.uint64(PARTS)).astype(int)
+    for number in range(1, len(aims)):
+        inside = np.flatnonzero(rounds == number)
+        part[inside] = _parts_of_round(len(inside))
+    chosen, new_part = np.empty(rows, int), _parts_of_round(rows)
+    weights = np.empty(len(result) + rows)
+    for k in range(PARTS):
+        mine, fresh = np.flatnonzero(part == k), np.flatnonzero(new_part == k)
+        density = np.full(POOL + len(mine), float((rounds[mine] == 0).sum()))
+        for number, earlier in enumerate(aims):
+            count = (rounds[mine] == number + 1).sum() if number + 1 < len(aims) else len(fresh)
+            learnt = np.flatnonzero((part != k) & (rounds <= number))
+            gain = _gain(result, z, learnt, np.vstack([z_pool, z[mine]]), earlier)
+            density += count * gain / gain[:POOL].mean()
+        # The last is the gain of this aim.
+        p = gain[:POOL] / gain[:POOL].sum()
+        chosen[fresh] = rng.choice(POOL, len(fresh), replace=False, p=p)
+        total = len(mine) + len(fresh)
+        weights[mine] = total / density[POOL:]
+        weights[len(result) + fresh] = total / density[chosen[fresh]]
+    return pool[chosen], weights
+
+
+def _parts_of_round(rows: int) -> NDArray[np.intp]:
+    """Return the part for which each row of a round is drawn."""
+    return np.sort(np.arange(rows) % PARTS)
+
+
+def _gain(result: Result, z: Floats, learnt: NDArray[np.intp], at: Floats, aim: Aim) -> Floats:
+    """Return how much rows are worth, up to a factor, shape (n,).
+
+    Parameters
+    ----------
+    result : Result
+    z : ndarray, shape (len(result), d)
+        Scaled inputs of its rows.
+    learnt : ndarray of int
+        Rows that may be used.
+    at : ndarray, shape (n, d)
+        Scaled inputs of the rows in question.
+    aim : Aim
+    """
+    if not aim.output:
+        from scipy.spatial import cKDTree
+
+        return np.asarray(cKDTree(z[learnt]).query(at)[0] ** z.shape[1]) + _LEAST
+    elements = result.named_elements(aim.output)
+    if len(elements) > 1:
+        allowed = choices([element.name for element in elements])
+        raise InputError(f"'{aim.output}' has several elements; name one ({allowed})")
+    (element,) = elements
+    values = element.for_thresholds
+    usable = np.isfinite(values[learnt]) & ~element.failed[learnt]
+    kept = learnt[usable][-_MOST_LEARNT:]
+    if len(kept) < 2 * z.shape[1] + 10 or not np.ptp(values[kept]) > 0:
+        raise InputError(f"next rows: too few rows have different values of '{aim.output}'")
+    logarithmic = element.is_lifetime and values[kept].min() > 0
+    if logarithmic and aim.near is not None and not aim.near > 0:
+        raise InputError(f"next rows: {aim.near:g} is no life")
+    y = np.log(values[kept]) if logarithmic else values[kept]
+    mean, error = process_at(z[kept], (y - y.mean()) / y.std(), at)
+    if aim.near is None:
+        return error**2
+    limit = ((np.log(aim.near) if logarithmic else aim.near) - y.mean()) / y.std()
+    return np.asarray(special.ndtr(-np.abs(mean - limit) / error) + _LEAST)
