@@ -19,6 +19,8 @@ from uq.text.literals import plain_line
 if TYPE_CHECKING:
     import xarray as xr
 
+    from uq.result.result import Result
+
 _LARGEST = 20_000_000  # bytes: their checksum takes a small part of the time of a summary
 
 
@@ -38,7 +40,22 @@ _Aimed = Annotated[
         autocompletion=completion.complete_output,
     ),
 ]
-_Near = Annotated[float | None, typer.Option(metavar="Y", help="Learn which rows are beyond Y.")]
+_Near = Annotated[
+    str | None,
+    typer.Option("--near", metavar="Y", help='Learn which are beyond, such as "12 degrees".'),
+]
+
+
+def _aim(result: "Result", output: str, near: str | None) -> tuple[str, float | None]:
+    """Return the element to learn, and the value near which rows are wanted."""
+    from uq.text.quantities import read_threshold
+
+    if near is None:
+        return output, None
+    if not output:
+        raise InputError("--near: name the output, --output NAME")
+    unit = result.named_elements(output)[0].units
+    return output, read_threshold("--near", near, output, unit)
 
 
 def next_rows(
@@ -52,8 +69,10 @@ def next_rows(
     """Propose the rows to compute next; 'uq extend --next N' computes them."""
     from uq.cli import printing
     from uq.explore import next_rows as proposal
+    from uq.result.result import Result
 
-    table = proposal.next_rows(result, number, output, near, model)
+    opened = Result.open(result)
+    table = proposal.next_rows(opened, number, *_aim(opened, output, near), model)
     if json:
         printing.print_json({name: column.tolist() for name, column in table.items()})
         return
@@ -101,7 +120,7 @@ def extend(
 def _by_next(
     result: Path,
     rows: int,
-    aim: tuple[str, float | None],
+    aim: tuple[str, str | None],
     into: Path,
     model: str | None,
     options: RunOptions,
@@ -115,7 +134,7 @@ def _by_next(
     opened = Result.open(result)
 
     def action(options: RunOptions) -> "xr.Dataset":
-        return extend_by_next(opened, rows, Aim(*aim), into, model, options)
+        return extend_by_next(opened, rows, Aim(*_aim(opened, *aim)), into, model, options)
 
     _, note = carried_out(into, quiet, options, action)
     if not quiet:
