@@ -139,7 +139,8 @@ class Study:
         if self.tied:
             parts.append({name: tied.equals for name, tied in self.tied.items()})
         if self.dependence:
-            parts.append(self.dependence.model_dump(exclude={"source"}))
+            given = self.dependence.model_dump(exclude={"source"}, exclude_defaults=True)
+            parts.append(given)
         if self.imported:
             parts.append(dict(self.imported))
         if self.design.rows_of_a_sample > 1:  # otherwise levels have no effect

@@ -9,6 +9,7 @@ import numpy as np
 from uq.contract import Model, Parameter
 from uq.errors import nearest
 from uq.indices.methods import fed_by
+from uq.sampling.copulas import NORMAL, copula_problem
 from uq.sampling.data_files import Columns, columns_of_files, numbers
 from uq.sampling.dependence import matrix_problem
 from uq.sampling.designs import DESIGNS, IMPORTED
@@ -155,8 +156,17 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[I
         seen = ", ".join(f"{name} is {level}" for name, level in levels.items())
         problem = f"must be inputs of one level: {seen}"
         yield InputFault(("dependence", "parameters"), problem)
-    if names and ranks is not None and (wrong := matrix_problem(tuple(names), ranks)):
-        yield wrong.within("dependence", "rank_correlation")
+    if names and ranks is not None:
+        if wrong := matrix_problem(tuple(names), ranks):
+            yield wrong.within("dependence", "rank_correlation")
+        elif wrong := copula_problem(
+            tuple(names),
+            ranks[0][1],
+            table.get("copula", NORMAL),
+            table.get("degrees_of_freedom"),
+            table.get("survival", False),
+        ):
+            yield wrong.within("dependence")
     method = tables["design"].get("method")
     if method in IMPORTED:
         yield InputFault(("dependence",), "imported rows carry their own dependence; leave it out")
