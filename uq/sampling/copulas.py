@@ -16,12 +16,15 @@ import numpy as np
 
 from uq.contract import Floats
 from uq.sampling.input_faults import InputFault
+from uq.sampling.unit_cube import inside
 
 LEAST, MOST = 0.001, 0.999
 """Range of the magnitude of rank correlations of copulas other than the normal."""
 
 LEAST_FREEDOM, MOST_FREEDOM = 1.0, 1000.0
 """Range of the degrees of freedom of Student's copula; beyond it, it is the normal copula."""
+
+_FREEDOM = f"a number from {LEAST_FREEDOM:g} to {MOST_FREEDOM:g}"
 
 
 class PairCopula(ABC):
@@ -320,7 +323,7 @@ class FrankPair(PairCopula):
     def joint(self, u: Floats, v: Floats) -> Floats:
         """Return C(u, v)."""
         if self.theta < 0:
-            return u - FrankPair(-self.theta).joint(u, 1 - v)
+            return u - FrankPair(-self.theta).joint(u, _mirrored(v))
         whole = -np.expm1(-self.theta)
         if self.theta < 1:
             part = np.expm1(-self.theta * u) * np.expm1(-self.theta * v) / whole
@@ -332,14 +335,14 @@ class FrankPair(PairCopula):
         from scipy.special import expit
 
         if self.theta < 0:
-            return 1 - FrankPair(-self.theta).conditional(1 - v, u)
+            return 1 - FrankPair(-self.theta).conditional(_mirrored(v), u)
         above, below = self._parts(u, v)
         return np.asarray(expit(above - below))
 
     def conditional_quantile(self, w: Floats, u: Floats) -> Floats:
         """Return v with P(V <= v | U = u) = w."""
         if self.theta < 0:
-            return 1 - FrankPair(-self.theta).conditional_quantile(1 - w, u)
+            return 1 - FrankPair(-self.theta).conditional_quantile(_mirrored(w), u)
         log_w, log_rest, other = np.log(w), np.log1p(-w), -self.theta * u
         if self.theta < 1:  # both logarithms below would be nearly the same
             shift = w * np.expm1(-self.theta) / (w + (1 - w) * np.exp(other))
@@ -350,7 +353,7 @@ class FrankPair(PairCopula):
     def log_density(self, u: Floats, v: Floats) -> Floats:
         """Return the logarithm of the density."""
         if self.theta < 0:
-            return FrankPair(-self.theta).log_density(u, 1 - v)
+            return FrankPair(-self.theta).log_density(u, _mirrored(v))
         constant = log(self.theta) + log(-np.expm1(-self.theta))
         return constant - self.theta * (u + v) - 2 * np.logaddexp(*self._parts(u, v))
 
@@ -387,19 +390,19 @@ class SurvivalPair(PairCopula):
 
     def joint(self, u: Floats, v: Floats) -> Floats:
         """Return C(u, v)."""
-        return u + v - 1 + self.of.joint(1 - u, 1 - v)
+        return u + v - 1 + self.of.joint(_mirrored(u), _mirrored(v))
 
     def conditional(self, v: Floats, u: Floats) -> Floats:
         """Return P(V <= v | U = u)."""
-        return 1 - self.of.conditional(1 - v, 1 - u)
+        return 1 - self.of.conditional(_mirrored(v), _mirrored(u))
 
     def conditional_quantile(self, w: Floats, u: Floats) -> Floats:
         """Return v with P(V <= v | U = u) = w."""
-        return 1 - self.of.conditional_quantile(1 - w, 1 - u)
+        return 1 - self.of.conditional_quantile(_mirrored(w), _mirrored(u))
 
     def log_density(self, u: Floats, v: Floats) -> Floats:
         """Return the logarithm of the density."""
-        return self.of.log_density(1 - u, 1 - v)
+        return self.of.log_density(_mirrored(u), _mirrored(v))
 
     @property
     def rank_correlation(self) -> float:
@@ -471,8 +474,9 @@ def copula_problem(
         problem = f'is for two parameters, and there are {len(names)}; use "normal"'
         return InputFault(("copula",), problem, name)
     if name == STUDENT and freedom is None:
-        needed = f"a number from {LEAST_FREEDOM:g} to {MOST_FREEDOM:g}"
-        return InputFault(("degrees_of_freedom",), f'is missing for "student": {needed}')
+        return InputFault(("degrees_of_freedom",), f'is missing for "student": {_FREEDOM}')
+    if freedom is not None and not LEAST_FREEDOM <= freedom <= MOST_FREEDOM:
+        return InputFault(("degrees_of_freedom",), f"must be {_FREEDOM}", freedom)
     least = {STUDENT: -MOST, "frank": -MOST}.get(name, LEAST)
     if not least <= rank <= MOST:
         more = '; for a negative one use "student", "frank" or "normal"' if rank < 0 else ""
@@ -532,6 +536,11 @@ def copula_of_rank(
             else FrankPair(-copula.theta)  # type: ignore[attr-defined]
         )
     return SurvivalPair(copula) if survival else copula
+
+
+def _mirrored(u: Floats) -> Floats:
+    """Return 1 - u, within (0, 1)."""
+    return inside(1 - u)
 
 
 def _log_complement(x: Floats) -> Floats:

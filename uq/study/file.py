@@ -300,9 +300,8 @@ class DependenceTable(_Table):
     )
     degrees_of_freedom: float | None = Field(
         None,
-        ge=LEAST_FREEDOM,
-        le=MOST_FREEDOM,
         description="of Student's copula: the fewer, the more dependent its tails",
+        json_schema_extra={"minimum": LEAST_FREEDOM, "maximum": MOST_FREEDOM},
     )
     survival: bool = Field(
         False, description="clayton and gumbel: lower and upper tails exchanged (survival copula)"
