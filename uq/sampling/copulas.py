@@ -144,15 +144,10 @@ class StudentPair(PairCopula):
 
     def log_density(self, u: Floats, v: Floats) -> Floats:
         """Return the logarithm of the density."""
-        from scipy.special import gammaln, stdtrit
+        from scipy.special import stdtrit
 
-        nu, r = self.freedom, self.correlation
-        x, y = stdtrit(nu, u), stdtrit(nu, v)
-        constant = gammaln(nu / 2 + 1) + gammaln(nu / 2) - 2 * gammaln((nu + 1) / 2)
-        square = (x**2 - 2 * r * x * y + y**2) / (1 - r**2)
-        alone = (nu + 1) / 2 * (np.log1p(x**2 / nu) + np.log1p(y**2 / nu))
-        together = (nu / 2 + 1) * np.log1p(square / nu) + 0.5 * log1p(-(r**2))
-        return np.asarray(constant + alone - together)
+        x, y = stdtrit(self.freedom, u), stdtrit(self.freedom, v)
+        return _student_log_density(x, y, self.correlation, self.freedom)
 
     @property
     def rank_correlation(self) -> float:
@@ -536,6 +531,80 @@ def copula_of_rank(
             else FrankPair(-copula.theta)  # type: ignore[attr-defined]
         )
     return SurvivalPair(copula) if survival else copula
+
+
+def fitted_copula(name: str, u: Floats, v: Floats, survival: bool = False) -> PairCopula:
+    """Return the copula with the largest likelihood of pairs of points.
+
+    Parameters
+    ----------
+    name : str
+        As in `COPULAS`.
+    u, v : ndarray, shape (n,)
+        Ranks over n + 1.
+    survival : bool
+        Whether lower and upper tails are exchanged.
+
+    Returns
+    -------
+    PairCopula
+        Clayton's and Gumbel's copula have no negative dependence: where the points have, it is that
+        of the weakest dependence.
+
+    References
+    ----------
+    C. Genest, K. Ghoudi, L.-P. Rivest, "A semiparametric estimation procedure of dependence
+    parameters in multivariate families of distributions", Biometrika 82, 543-552 (1995).
+    """
+    if survival:
+        return SurvivalPair(fitted_copula(name, _mirrored(u), _mirrored(v)))
+    if name == STUDENT:
+        return _fitted_student(u, v)
+    if name == "frank" and np.corrcoef(u, v)[0, 1] < 0:
+        mirrored = fitted_copula(name, u, _mirrored(v))
+        return FrankPair(-mirrored.theta)  # type: ignore[attr-defined]
+
+    def at(x: float) -> PairCopula:
+        return NormalPair(float(np.tanh(x))) if name == NORMAL else _POSITIVE[name][0](x)
+
+    ends = (-9.0, 9.0) if name == NORMAL else _POSITIVE[name][1:]
+    return at(_lowest(lambda x: -float(at(x).log_density(u, v).sum()), ends, 1e-7))
+
+
+def _fitted_student(u: Floats, v: Floats) -> StudentPair:
+    """Return Student's copula of the largest likelihood: of each freedom, then of all."""
+    from scipy.special import stdtrit
+
+    def of_freedom(log_freedom: float) -> tuple[float, StudentPair]:
+        freedom = exp(log_freedom)
+        x, y = stdtrit(freedom, u), stdtrit(freedom, v)
+
+        def loss(z: float) -> float:
+            return -float(_student_log_density(x, y, float(np.tanh(z)), freedom).sum())
+
+        z = _lowest(loss, (-9.0, 9.0), 1e-7)
+        return loss(z), StudentPair(float(np.tanh(z)), freedom)
+
+    ends = log(LEAST_FREEDOM), log(MOST_FREEDOM)
+    return of_freedom(_lowest(lambda x: of_freedom(x)[0], ends, 1e-3))[1]
+
+
+def _lowest(loss: Callable[[float], float], ends: tuple[float, float], tolerance: float) -> float:
+    """Return the place of the minimum of a function between two ends."""
+    from scipy.optimize import minimize_scalar
+
+    return float(minimize_scalar(loss, bounds=ends, options={"xatol": tolerance}).x)
+
+
+def _student_log_density(x: Any, y: Any, r: float, nu: float) -> Floats:
+    """Return the logarithm of the density of Student's copula at scores x and y."""
+    from scipy.special import gammaln
+
+    constant = gammaln(nu / 2 + 1) + gammaln(nu / 2) - 2 * gammaln((nu + 1) / 2)
+    square = (x**2 - 2 * r * x * y + y**2) / (1 - r**2)
+    alone = (nu + 1) / 2 * (np.log1p(x**2 / nu) + np.log1p(y**2 / nu))
+    together = (nu / 2 + 1) * np.log1p(square / nu) + 0.5 * log1p(-(r**2))
+    return np.asarray(constant + alone - together)
 
 
 def _mirrored(u: Floats) -> Floats:

@@ -97,6 +97,15 @@ def test_conditional_quantiles_are_the_inverse(copula):
     np.testing.assert_allclose(copula.conditional(v, u)[kept], w[kept], rtol=1e-9)
 
 
+@pytest.mark.parametrize("theta", [1.5, 2.5, 20.0])
+def test_quantiles_of_gumbel_keep_their_digits_in_the_upper_tail(theta):
+    copula, u = GumbelPair(theta), points()[0]
+    for above in (1e-8, 1e-12):
+        w = np.full(len(u), 1 - above)
+        back = copula.conditional(copula.conditional_quantile(w, u), u)
+        np.testing.assert_allclose(np.log(back), np.log(w), rtol=1e-5)
+
+
 @pytest.mark.parametrize("name", list(COPULAS))
 @pytest.mark.parametrize("rank", [0.001, 0.05, 0.5, 0.9, 0.999, -0.7])
 def test_corners_of_the_unit_square_are_finite(name, rank):
@@ -231,6 +240,12 @@ def test_rows_have_the_copula_and_laws_that_were_stated(copula, method):
     v = law.cdf(inputs["x3"])
     for points_of in (u, v):
         assert stats.kstest(points_of, "uniform").statistic < (0.01 if exact else 0.02)
+    # Which of the two corners has more rows.
+    lower, upper = np.mean((u < 0.1) & (v < 0.1)), np.mean((u > 0.9) & (v > 0.9))
+    corner = {"clayton": 1, "survival clayton": -1, "gumbel": -1}
+    names = ("survival " * copula.get("survival", False)) + copula["copula"]
+    assert (lower - upper) * corner.get(names, 0) >= 0
+    assert abs(lower - upper) > 0.01 or names not in corner
     expected = study.dependence.pair
     for a, b in ((0.02, 0.02), (0.1, 0.1), (0.5, 0.2), (0.9, 0.9), (0.98, 0.98)):
         share = np.mean((u <= a) & (v <= b))
