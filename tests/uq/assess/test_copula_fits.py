@@ -38,7 +38,7 @@ def test_the_copula_of_a_large_sample_has_the_lowest_aic_and_its_parameters(word
     assert fits.index[0] == words and fits["aic"].is_monotonic_increasing
     copula, line = copula_of_rank(name, 0.6, **options), fits.loc[words]
     assert line["rank_correlation"] == pytest.approx(0.6, abs=0.04)
-    assert line["distance"] < 0.1 == (fits["distance"] < 0.1).loc[words] * 0.1
+    assert line["distance"] < 0.1 < fits["distance"].max()
     lower, upper = copula.tails
     assert line[["lower_tail", "upper_tail"]].to_list() == pytest.approx([lower, upper], abs=0.06)
     if name == "student":
@@ -133,11 +133,11 @@ def test_equal_values_are_told_and_refused():
     data = columns("normal", 0.5, 400)
     data["b"][:40] = data["b"][0]
     assert (
-        "10 % of the values of a column are equal"
+        "10.0 % of the values of a column are equal"
         in uq.copula_fits(data, "a", "b").attrs["conclusion"]
     )
     data["b"][:120] = data["b"][0]
-    with pytest.raises(InputError, match="copula fits: 30 % of the values of b are equal"):
+    with pytest.raises(InputError, match="copula fits: 30.0 % of the values of b are equal"):
         uq.copula_fits(data, "a", "b")
 
 
