@@ -238,6 +238,7 @@ def copula_fits(data: Any, first: str, second: str, refits: int = 0, seed: int =
 
     Examples
     --------
+    >>> import numpy as np
     >>> rng = np.random.default_rng(1)
     >>> a = rng.weibull(2.0, 400)
     >>> fits = uq.copula_fits({"a": a, "b": a + 0.3 * rng.weibull(2.0, 400)}, "a", "b")
