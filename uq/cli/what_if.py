@@ -141,7 +141,8 @@ def what_if(
     tables = [*_tables(result, studied, changed.summary)]
     subject = _subject(result, tables)
     heading(f"What if {'; '.join(texts)}?")
-    paragraph(f"as studied: {'; '.join(_as_studied(result, changes))}", indent=2)
+    before = dict.fromkeys(_as_studied(result, changes))
+    paragraph(f"as studied: {'; '.join(before)}", indent=2)
     if subject is not None:
         for pair in subject.leading(_wanted(result, subject)):
             paragraph(subject.sentence(*pair), indent=2)

@@ -274,7 +274,8 @@ def study_from_text(
     columns, more = columns_of_files(tables, folder)
     tables["settings"] = with_rows_of_files(tables["settings"], columns)
     entries, spoilt = read_entries(tables, columns)
-    faults += [*more, *spoilt, *dependence_faults(tables, entries), *of_model]
+    incomplete = any(fault.path[0] == "dependence" for fault in faults)
+    faults += [*more, *spoilt, *dependence_faults(tables, entries, incomplete), *of_model]
     if study_model is not None:
         faults += model_faults(study_model, data, tables)
         faults += input_faults(study_model, entries)

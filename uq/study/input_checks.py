@@ -138,8 +138,19 @@ def _followed(entry: Law | Tied) -> str | None:
     return entry.equals if isinstance(entry, Tied) else entry.times
 
 
-def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[InputFault]:
-    """Yield the faults of [dependence], including conflicts with the design."""
+def dependence_faults(
+    tables: Mapping[str, Any], entries: Entries, incomplete: bool
+) -> Iterator[InputFault]:
+    """Yield the faults of [dependence], including conflicts with the design.
+
+    Parameters
+    ----------
+    tables : dict
+        Valid entries of a study file.
+    entries : dict of str to Law or Tied
+    incomplete : bool
+        Whether entries of [dependence] are invalid; its copula is then not checked.
+    """
     table = tables["dependence"]
     if not table:
         return
@@ -159,12 +170,14 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[I
     if names and ranks is not None:
         if wrong := matrix_problem(tuple(names), ranks):
             yield wrong.within("dependence", "rank_correlation")
-        elif wrong := copula_problem(
-            tuple(names),
-            ranks[0][1],
-            table.get("copula", NORMAL),
-            table.get("degrees_of_freedom"),
-            table.get("survival", False),
+        elif not incomplete and (
+            wrong := copula_problem(
+                tuple(names),
+                ranks[0][1],
+                table.get("copula", NORMAL),
+                table.get("degrees_of_freedom"),
+                table.get("survival", False),
+            )
         ):
             yield wrong.within("dependence")
     method = tables["design"].get("method")

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import openturns as ot
 import pytest
-from computed import study_of
+from computed import as_text, study_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from input_studies import BELL, UNIFORM, inputs_of, refusal, tables
@@ -322,6 +322,29 @@ NEGATIVE = {"rank_correlation": [[1.0, -0.6], [-0.6, 1.0]]}
 def test_a_wrong_copula_is_refused_in_one_line(changes, message):
     entries = {"x1": UNIFORM, "x2": UNIFORM, "x3": UNIFORM}
     assert message in refusal(tables(entries, dependence=DEPENDENT | changes))
+
+
+def test_a_misspelt_copula_is_the_only_fault_of_its_table():
+    entries, options = {"x1": UNIFORM, "x3": UNIFORM}, {"copula": "claiton", "survival": True}
+    assert "did you mean 'clayton'" in refusal(tables(entries, dependence=DEPENDENT | options))
+    options = {"copula": "student", "degrees_of_freedom": "four"}
+    assert "must be a number" in refusal(tables(entries, dependence=DEPENDENT | options))
+
+
+def test_the_command_line_states_the_copula_and_its_tails(uq, tmp_path):
+    path, result = tmp_path / "pair.toml", tmp_path / "pair.nc"
+    options = {"copula": "clayton", "survival": True}
+    path.write_text(
+        as_text(tables({"x1": UNIFORM, "x3": BELL}, samples=200, dependence=DEPENDENT | options))
+    )
+    lower, upper = copula_of_rank("clayton", 0.6).tails
+    shown = " ".join(uq("check", path).out.split())
+    assert f"survival Clayton copula; tail dependence: lower {upper:g}, upper {lower:.5g}" in shown
+    assert uq("run", path, "-o", result, "--quiet").code == 0
+    changes = ("--set", "dependence.copula=student", "--set", "dependence.degrees_of_freedom=9")
+    ended = uq("what-if", result, *changes)
+    assert ended.out.count("as studied: survival Clayton copula") == 1, ended.err
+    assert "copula; survival" not in " ".join(ended.out.split())
 
 
 def test_several_tables_are_refused():
