@@ -4,12 +4,14 @@ import mpmath
 import numpy as np
 import openturns as ot
 import pytest
-from computed import as_text, study_of
+from computed import as_text, computed, study_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from input_studies import BELL, UNIFORM, inputs_of, refusal, tables
 from scipy import stats
 
+from uq.assess.row_inputs import correlated_inputs
+from uq.result.result import Result
 from uq.sampling.copulas import (
     COPULAS,
     ClaytonPair,
@@ -345,6 +347,18 @@ def test_the_command_line_states_the_copula_and_its_tails(uq, tmp_path):
     ended = uq("what-if", result, *changes)
     assert ended.out.count("as studied: survival Clayton copula") == 1, ended.err
     assert "copula; survival" not in " ".join(ended.out.split())
+
+
+def test_inputs_without_rank_correlation_may_depend_on_each_other():
+    """Student's copula has dependent tails, whatever the rank correlation."""
+    options = {"copula": "student", "degrees_of_freedom": 2.0}
+    nothing = {"rank_correlation": [[1.0, 0.0], [0.0, 1.0]]}
+    study = dependent(options | nothing, "monte-carlo", 4000)
+    assert study.dependence.pair.correlation == 0.0
+    u, v = (stats.rankdata(inputs_of(study)[name]) / 4000 - 0.5 for name in ("x1", "x3"))
+    assert abs(np.corrcoef(u, v)[0, 1]) < 0.05 < np.corrcoef(np.abs(u), np.abs(v))[0, 1]
+    related = correlated_inputs(Result(computed(study)))
+    assert related == {"x3": ("x1",), "x1": ("x3",)}
 
 
 def test_several_tables_are_refused():
