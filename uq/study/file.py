@@ -25,7 +25,7 @@ from pydantic import (
 )
 from pydantic_core.core_schema import no_info_plain_validator_function
 
-from uq.errors import nearest
+from uq.errors import InputError, nearest
 from uq.indices.methods import METHODS
 from uq.sampling.copulas import (
     COPULAS,
@@ -310,9 +310,17 @@ class DependenceTable(_Table):
 
     @property
     def pair(self) -> PairCopula | None:
-        """The copula of two parameters; None for the normal one."""
+        """The copula of two parameters; None for the normal one.
+
+        Raises
+        ------
+        InputError
+            When the table is not valid: the study of a result may be from anyone.
+        """
         if self.copula == NORMAL:
             return None
+        if (wrong := self.fault) is not None:
+            raise InputError(wrong.within("dependence").line)
         rank = self.rank_correlation[0][1]
         return copula_of_rank(self.copula, rank, self.degrees_of_freedom, self.survival)
 

@@ -11,6 +11,7 @@ from input_studies import BELL, UNIFORM, inputs_of, refusal, tables
 from scipy import stats
 
 from uq.assess.row_inputs import correlated_inputs
+from uq.errors import InputError
 from uq.result.result import Result
 from uq.sampling.copulas import (
     COPULAS,
@@ -359,6 +360,20 @@ def test_inputs_without_rank_correlation_may_depend_on_each_other():
     assert abs(np.corrcoef(u, v)[0, 1]) < 0.05 < np.corrcoef(np.abs(u), np.abs(v))[0, 1]
     related = correlated_inputs(Result(computed(study)))
     assert related == {"x3": ("x1",), "x1": ("x3",)}
+
+
+def test_an_invalid_copula_in_a_result_is_refused():
+    """The text of a study may have been edited in the file of a result."""
+    ds = computed(dependent({"copula": "gumbel"}, "monte-carlo", 64))
+    for good, bad in (
+        ('copula = "gumbel"', 'copula = "student"'),
+        ("[[1.0, 0.6], [0.6, 1.0]]", "[[1.0]]"),
+        ("[[1.0, 0.6], [0.6, 1.0]]", "[[1.0, -0.6], [-0.6, 1.0]]"),
+    ):
+        assert good in ds.attrs["study"]
+        edited = ds.assign_attrs(study=ds.attrs["study"].replace(good, bad))
+        with pytest.raises(InputError, match=r"^\[dependence\] "):
+            correlated_inputs(Result(edited))
 
 
 def test_several_tables_are_refused():
