@@ -116,7 +116,9 @@ def test_a_discrete_input_of_a_pair_is_known_by_its_value():
     p, w = np.random.default_rng(1).random((2, 400_000))
     v = copula.conditional_quantile(w, p)
     for above in (False, True):
-        drawn = drawn_paths[alone & ((drawn_paths[:, 0, 0] > 0.5) == above), 1, 1]
+        rows_above = alone & ((drawn_paths[:, 0, 0] > 0.5) == above)
+        drawn, before = drawn_paths[rows_above, 1, 1], drawn_paths[rows_above, 0, 1]
+        assert abs(stats.spearmanr(drawn, before).statistic) < 4 / np.sqrt(len(drawn))
         truth = v[(p > 0.5) == above]
         assert stats.ks_2samp(drawn, truth).pvalue > 1e-4
         assert abs(drawn.mean() - truth.mean()) < 4 * drawn.std() / np.sqrt(len(drawn))
