@@ -10,6 +10,7 @@ from .assess.emulate import emulate as emulate
 from .assess.fleet import fleet as fleet
 from .assess.life_fit import life_fits as life_fits
 from .assess.regimes import regimes as regimes
+from .assess.sampled_laws import copula_fits as copula_fits
 from .assess.sensitivity_table import sensitivity as sensitivity
 from .assess.summary_table import summary as summary
 from .assess.survival import survival as survival

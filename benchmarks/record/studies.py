@@ -64,6 +64,7 @@ THRESHOLDS = {
 }
 TOLERANCE = "tolerance = {coverage = 0.95, confidence = 0.95}"
 CORRELATED = '[dependence]\nparameters = ["x1", "x2"]\nrank_correlation = [[1, 0.5], [0.5, 1]]'
+BY_CLAYTON = f'{CORRELATED}\ncopula = "clayton"'
 ON_LEVELS = {
     "x1": LAWS["linear"]["x1"] + '\nlevel = "shared"',
     "x2": LAWS["linear"]["x2"],
@@ -133,6 +134,8 @@ def small_studies() -> dict[str, str]:
         ),
         "correlated-small": _study("linear", "monte-carlo", 200, CORRELATED),
         "correlated-paths-small": _study("linear", "shapley", 64, CORRELATED),
+        "copula-small": _study("linear", "monte-carlo", 200, BY_CLAYTON),
+        "copula-paths-small": _study("linear", "shapley", 64, BY_CLAYTON),
         "laws-small": _study("linear", "monte-carlo", 200, laws=OF_EVERY_KIND),
         "until-small": _study(
             "linear",
@@ -169,7 +172,7 @@ def _study(
         for name, law in (laws or LAWS[model]).items()
     )
     methods = json.dumps(
-        DEPENDENT if more is CORRELATED and method != "shapley" else METHODS[method]
+        DEPENDENT if "[dependence]" in more and method != "shapley" else METHODS[method]
     )
     replicates = "" if method == "imported" else f"replicates = {REPLICATES.get(method, 4)}"
     seed = "" if method == "imported" else "seed = 7"

@@ -26,6 +26,7 @@ def test_everything_promised_is_there():
             "labels",
             "fleet",
             "levels",
+            "copula_fits",
             "life_fits",
             "load_study",
             "regimes",

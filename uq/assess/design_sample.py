@@ -48,12 +48,13 @@ def with_scores(sample: DesignSample, result: Result, unit: Floats) -> DesignSam
     discrete = {name for name, law in laws.items() if law.discrete}
     if stated is not None:
         places = [names.index(name) for name in stated.parameters]
-        if discrete & set(stated.parameters):  # scores behind their values are not known
+        if stated.pair is not None or discrete & set(stated.parameters):
+            # Their scores are not jointly normal, or those behind their values are not known.
             discrete |= set(stated.parameters)
         else:
             paths = unit[..., places].reshape(-1, unit.shape[2], len(places))
             none = [None] * len(places)
-            paths = conditional_paths(paths, stated.rank_correlation, none)
+            paths = conditional_paths(paths, stated.joint, none)
             unit[..., places] = paths.reshape(*unit.shape[:-1], len(places))
             matrix[np.ix_(places, places)] = normal_correlations(stated.rank_correlation)
     scores = ndtri(unit)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from uq.contract import Floats
 from uq.result.result import Result
-from uq.study.file import StudyFile, Tied
+from uq.study.file import DependenceTable, StudyFile, Tied
 from uq.text.literals import shown
 from uq.text.numbers import law
 
@@ -74,10 +74,16 @@ def _frame(sides: list[Side]) -> Iterator[ChangedEntry]:
         for _, study in sides
     ]
     if ranks[0] != ranks[1]:
-        parameters = (
-            ", ".join(correlation["parameters"]) if correlation else "none" for correlation in ranks
-        )
+        parameters = (_dependence(study.dependence) for _, study in sides)
         yield ChangedEntry("dependence", "rank correlations", *parameters)
+
+
+def _dependence(table: DependenceTable | None) -> str:
+    """Return the dependent parameters, and their copula if it is not the normal one."""
+    if table is None:
+        return "none"
+    rank = f"{table.words}, {table.rank_correlation[0][1]:g}" if table.words else ""
+    return ", ".join(table.parameters) + f" ({rank})" * bool(rank)
 
 
 def _entries(result: Result, study: StudyFile) -> Iterator[tuple[tuple[str, str], Any]]:

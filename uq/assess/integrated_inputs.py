@@ -9,7 +9,9 @@ import numpy as np
 from uq.assess.row_inputs import Inputs, inputs_of
 from uq.assess.scale_laws import (
     ConditionalScale,
+    CopulaGiven,
     IndependentScale,
+    NormalGiven,
     Scale,
     posterior_input,
     posterior_scale,
@@ -75,7 +77,7 @@ def integrated(
         for name, exponent in exponents.items()
         if name not in kept and name not in free
     }
-    reach = {name: law.deviation * law.spread for name, law in bound.items()}
+    reach = {name: law.given.deviation * law.spread for name, law in bound.items()}
     widest = max(bound, key=lambda name: reach[name], default="")
     if free and np.hypot.reduce([term.spread for term in free.values()]) >= reach.get(widest, 0.0):
         kept |= dict.fromkeys(bound, "it depends on other inputs, and others scatter lives more")
@@ -183,16 +185,28 @@ def _conditional(name: str, exponent: float, inputs: Inputs) -> ConditionalScale
     """Return the conditional law of an input given its correlated inputs."""
     law, bounds, values = inputs.laws[name], inputs.bounds[name], inputs.values[name]
     if law.times is not None:
-        nothing = np.zeros(len(values))
+        nothing = NormalGiven(np.zeros(len(values)), 1.0)
         other = inputs.values[law.times]
-        return ConditionalScale((name,), law, bounds, exponent, values, nothing, 1.0, other)
+        return ConditionalScale((name,), law, bounds, exponent, values, nothing, other)
+    return ConditionalScale((name,), law, bounds, exponent, values, _given_others(name, inputs))
+
+
+def _given_others(name: str, inputs: Inputs) -> NormalGiven | CopulaGiven:
+    """Return the conditional law of the probability of an input given its correlated inputs."""
+    assert inputs.dependence is not None
+    if (pair := inputs.dependence.pair) is not None:
+        (partner,) = (other for other in inputs.correlated if other != name)
+        return CopulaGiven(pair, inputs.probability(partner))
     slopes, deviation = given_others(name, inputs)
     mean = np.stack([inputs.normal(other) for other in slopes], axis=1) @ list(slopes.values())
-    return ConditionalScale((name,), law, bounds, exponent, values, mean, deviation)
+    return NormalGiven(mean, deviation)
 
 
 def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
-    """Return slopes and deviation of the normal variable of an input, given the others."""
+    """Return slopes and deviation of the normal variable of an input, given the others.
+
+    For the normal copula.
+    """
     assert inputs.dependence is not None
     names = list(inputs.correlated)
     matrix = normal_correlations(inputs.dependence.rank_correlation)

@@ -50,7 +50,7 @@ def depends_otherwise(old: Inputs, new: Inputs) -> bool:
     """Return whether correlated inputs have other laws or other correlations."""
     if old.dependence is None or new.dependence is None:
         return False
-    if old.dependence.rank_correlation != new.dependence.rank_correlation:
+    if old.dependence.joint != new.dependence.joint:
         return True
     return any(name in old.correlated for name in changed_laws(old, new))
 
@@ -79,7 +79,12 @@ def _log_density(inputs: Inputs, name: str) -> Floats:
 
 
 def _log_copula(inputs: Inputs, integrated: Collection[str]) -> Floats:
-    """Return the logarithm of the Gaussian copula's density."""
+    """Return the logarithm of the density of the copula of the inputs that are not integrated."""
+    assert inputs.dependence is not None
+    if (pair := inputs.dependence.pair) is not None:
+        if any(name in integrated for name in inputs.correlated):
+            return np.zeros(1)  # the law of a single input is uniform under any copula
+        return pair.log_density(*map(inputs.probability, inputs.correlated))
     names, matrix = correlations(inputs, integrated)
     z = np.stack([inputs.normal(name) for name in names], axis=1)
     excess = np.linalg.inv(matrix) - np.eye(len(names))
@@ -89,6 +94,8 @@ def _log_copula(inputs: Inputs, integrated: Collection[str]) -> Floats:
 
 def correlations(inputs: Inputs, integrated: Collection[str] = ()) -> tuple[list[str], Floats]:
     """Return the correlated inputs that are not integrated, and how their normal variables are.
+
+    For the normal copula.
 
     Returns
     -------

@@ -54,9 +54,14 @@ class Inputs:
         law, values = self.laws[name], self.values[name]
         return values if law.times is None else factor_of(law, values, self.values[law.times])
 
+    def probability(self, name: str) -> Floats:
+        """Return the probabilities, within (0, 1), behind the values of a parameter."""
+        share = cdf_within(self.laws[name], self.values[name], self.bounds[name])
+        return np.clip(share, 2.0**-54, 1 - 2.0**-53)
+
     def normal(self, name: str) -> Floats:
         """Return the standard normal variables behind the values of a parameter."""
-        return normal_scores(self.values[name], self.laws[name], self.bounds[name])
+        return np.asarray(special.ndtri(self.probability(name)))
 
 
 def normal_scores(values: Floats, law: Law, bounds: tuple[float, float]) -> Floats:
@@ -149,9 +154,13 @@ def correlated_inputs(result: Result) -> dict[str, tuple[str, ...]]:
     stated = result.study.dependence
     if stated is None:
         return {}
-    names = stated.parameters
+    names, dependent = stated.parameters, stated.pair is not None  # even without rank correlation
     return {
-        name: tuple(other for other, rank in zip(names, row, strict=True) if rank and other != name)
+        name: tuple(
+            other
+            for other, rank in zip(names, row, strict=True)
+            if (rank or dependent) and other != name
+        )
         for name, row in zip(names, stated.rank_correlation, strict=True)
     }
 

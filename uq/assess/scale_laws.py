@@ -12,6 +12,7 @@ from uq.contract import Floats
 from uq.result.element import RowLaw
 from uq.result.result import Result
 from uq.result.weights import INPUT, LAW_SCORES, SCALE_SCORES
+from uq.sampling.copulas import PairCopula
 from uq.sampling.law import Law
 from uq.sampling.log_sums import Term, normal_rule
 from uq.sampling.truncation import cdf_between, cdf_within, factor_ends, ppf_between, ppf_within
@@ -85,6 +86,59 @@ class IndependentScale:
 
 
 @dataclass(frozen=True)
+class NormalGiven:
+    """Conditional law of the probability of an input given others: normal copula.
+
+    Attributes
+    ----------
+    mean : ndarray, shape (n,)
+        Of the input's standard normal variable, given those of the other inputs.
+    deviation : float
+    """
+
+    mean: Floats
+    deviation: float
+
+    def below(self, share: Floats) -> Floats:
+        """Return P(U <= share) of each row, shape (n,)."""
+        return np.asarray(special.ndtr((special.ndtri(share) - self.mean) / self.deviation))
+
+    def quantile(self, z: float) -> Floats:
+        """Return the quantile of U in each row, shape (n,), at a standard normal quantile."""
+        return np.asarray(special.ndtr(self.mean + self.deviation * z))
+
+
+@dataclass(frozen=True)
+class CopulaGiven:
+    """Conditional law of the probability of an input given another: copula of two inputs.
+
+    Attributes
+    ----------
+    copula : PairCopula
+    other : ndarray, shape (n,)
+        The probability of the other input.
+    """
+
+    copula: PairCopula
+    other: Floats
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation of the normal copula with the same rank correlation."""
+        return float(np.sqrt(1 - (2 * np.sin(np.pi / 6 * self.copula.rank_correlation)) ** 2))
+
+    def below(self, share: Floats) -> Floats:
+        """Return P(U <= share) of each row, shape (n,)."""
+        part = self.copula.conditional(np.clip(share, 1e-300, 1 - 2.0**-53), self.other)
+        return np.where(share <= 0, 0.0, np.where(share >= 1, 1.0, part))
+
+    def quantile(self, z: float) -> Floats:
+        """Return the quantile of U in each row, shape (n,), at a standard normal quantile."""
+        below = np.clip(special.ndtr(z), 2.0**-54, 1 - 2.0**-53)
+        return self.copula.conditional_quantile(np.full(self.other.shape, below), self.other)
+
+
+@dataclass(frozen=True)
 class ConditionalScale:
     """One input whose law depends on the other inputs of the row.
 
@@ -98,9 +152,8 @@ class ConditionalScale:
     exponent : float
     drawn : ndarray, shape (n,)
         The values of the rows.
-    mean : ndarray, shape (n,)
-        Of the input's standard normal variable, given those of the other inputs.
-    deviation : float
+    given : NormalGiven or CopulaGiven
+        Of the input's probability, given the other inputs.
     other : ndarray, shape (n,), optional
         The input that it is a multiple of; positive.
     """
@@ -110,8 +163,7 @@ class ConditionalScale:
     bounds: tuple[float, float]
     exponent: float
     drawn: Floats
-    mean: Floats
-    deviation: float = 1.0
+    given: NormalGiven | CopulaGiven
     other: Floats | None = None
 
     @property
@@ -131,13 +183,12 @@ class ConditionalScale:
         else:
             ends = factor_ends(self.other, self.bounds)
             share = cdf_between(self.law, value / self.other, *ends)
-        return np.asarray(special.ndtr((special.ndtri(share) - self.mean) / self.deviation))
+        return self.given.below(share)
 
     def log_life_shifts(self, z: Floats) -> Iterator[Floats]:
         """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in np.sign(self.exponent) * z:
-            u = special.ndtr(self.mean + self.deviation * at)
-            u = np.clip(u, 2.0**-54, 1 - 2.0**-53)
+            u = np.clip(self.given.quantile(at), 2.0**-54, 1 - 2.0**-53)
             if self.other is None:
                 value = ppf_within(self.law, u, self.bounds)
             else:

@@ -17,7 +17,6 @@ from uq.assess.summary_table import table_of
 from uq.contract import Parameter
 from uq.errors import InputError
 from uq.result.result import AnyResult, Result
-from uq.sampling.dependence import matrix_problem
 from uq.sampling.input_faults import InputFault
 from uq.sampling.listed_values import Empirical
 from uq.sampling.truncation import law_problem
@@ -64,7 +63,8 @@ def what_if(result: AnyResult, changes: Mapping[str, Any]) -> pd.DataFrame:
     changes : dict of str to object
         Entries of the study file, such as ``{"uncertain.initial_gap.sd": 1e-5}`` or, for another
         law, ``{"uncertain.initial_gap": {"distribution": "normal", "mean": 2e-4, "sd": 1e-5}}``;
-        or ``dependence.rank_correlation``.
+        or ``dependence.rank_correlation``, ``dependence.copula``, ``degrees_of_freedom`` and
+        ``survival``.
 
     Returns
     -------
@@ -178,7 +178,8 @@ def _value(text: str) -> Any:
 def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
     """Return the inputs of the rows with the laws of the study as changed."""
     data = read_toml(rows.dataset.attrs["study"])
-    for place, value in changes.items():
+    # Another copula first: it removes the options of the former one.
+    for place, value in sorted(changes.items(), key=lambda entry: entry[0] != _COPULA):
         _put(data, place, value)
     for name in [name for name in data["uncertain"] if name in rows.dataset]:
         units = str(rows.dataset[name].attrs["units"])
@@ -224,17 +225,32 @@ def _remedy(place: str, laws: Mapping[str, Mapping[str, Any]]) -> str:
         return "did you mean " + " or ".join(f"'uncertain.{entry}'" for entry in close) + "?"
     if place.partition(".")[0] in StudyFile.model_fields:
         return "it needs rows of its own: change it in a study, and run that"
-    return "only uncertain.NAME.KEY, uncertain.NAME and dependence.rank_correlation can"
+    return (
+        "only uncertain.NAME.KEY, uncertain.NAME, and rank_correlation, copula, degrees_of_freedom"
+        " and survival of dependence can"
+    )
+
+
+_COPULA = "dependence.copula"
+_CHANGED_IN = {
+    "rank_correlation": "correlations",
+    "copula": "copula",
+    "degrees_of_freedom": "copula",
+    "survival": "copula",
+}
 
 
 def _put(data: dict[str, Any], place: str, value: Any) -> None:
     table, _, rest = place.partition(".")
-    if (table, rest) == ("dependence", "rank_correlation"):
+    if table == "dependence" and rest in _CHANGED_IN:
         if table not in data:
             raise InputError(
-                "what if: this study has no [dependence] whose correlations can change"
+                f"what if: this study has no [dependence] whose {_CHANGED_IN[rest]} can change"
             )
         data[table][rest] = value
+        if rest == "copula":  # the options of the former one
+            data[table].pop("degrees_of_freedom", None)
+            data[table].pop("survival", None)
         return
     name, _, argument = rest.partition(".")
     laws = data["uncertain"]
@@ -270,9 +286,8 @@ def _faults(rows: Result, study: StudyFile, inputs: Inputs) -> list[InputFault]:
         if law.times is None and (problem := law_problem(law, declared)):
             faults.append(problem.within("uncertain", name))
     if study.dependence is not None:
-        names, ranks = study.dependence.parameters, study.dependence.rank_correlation
-        if wrong := matrix_problem(names, ranks):
-            faults.append(wrong.within("dependence", "rank_correlation"))
+        if wrong := study.dependence.fault:
+            faults.append(wrong.within("dependence"))
     return faults
 
 

@@ -154,7 +154,9 @@ def _show_sampled(study: Study) -> None:
         lines.append((f" {in_brackets(unit)}", "rows", *row_ends, f"{sampled_input.distance:.2g}"))
     grid(lines, header=("parameter", "", "5 %", "50 %", "95 %", "largest distance"))
     if study.dependence is not None:
-        heading("\nRank correlations")
+        pair = study.dependence.pair
+        more = "" if pair is None else _tails(study.dependence.words, pair.tails)
+        heading("\nRank correlations", more)
         ranks, names = sampled_ranks(study), study.dependence.parameters
         stated = study.dependence.rank_correlation
         grid(
@@ -164,6 +166,12 @@ def _show_sampled(study: Study) -> None:
             ],
             header=("", "stated", "rows"),
         )
+
+
+def _tails(words: str, tails: tuple[float, float]) -> str:
+    """Return a copula in words with its coefficients of tail dependence."""
+    lower, upper = map(number, tails)
+    return f"{words}; tail dependence: lower {lower}, upper {upper}"
 
 
 _SURE = 1.2  # a forecast with a wider margin is shown with its band

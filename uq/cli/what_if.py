@@ -140,7 +140,8 @@ def what_if(
     tables = [*_tables(result, studied, changed.summary)]
     subject = _subject(result, tables)
     heading(f"What if {'; '.join(texts)}?")
-    paragraph(f"as studied: {'; '.join(_as_studied(result, changes))}", indent=2)
+    before = dict.fromkeys(_as_studied(result, changes))
+    paragraph(f"as studied: {'; '.join(before)}", indent=2)
     if subject is not None:
         for pair in subject.leading(_wanted(result, subject)):
             paragraph(subject.sentence(*pair), indent=2)
@@ -188,7 +189,9 @@ def _as_studied(result: Result, changes: Mapping[str, Any]) -> Iterator[str]:
             value = result.study.settings.get(name)
             yield f"{name} {'at its default' if value is None else literals.shown(value)}"
         elif result.study.dependence is not None:
-            yield f"rank correlations {result.study.dependence.rank_correlation}"
+            words, ranks = result.study.dependence.words, result.study.dependence.rank_correlation
+            of_copula = words or "normal copula"
+            yield f"rank correlations {ranks}" if name == "rank_correlation" else of_copula
 
 
 def _tables(result: Result, studied: Summary, changed: Summary) -> Iterator[Table]:

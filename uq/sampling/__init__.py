@@ -6,6 +6,7 @@ Reading order; each part imports only those above it:
     unit_cube      sampling points of the unit cube
     levels         levels of nested sampling
     named_values   validation of named values for the parameters and settings of a model
+    copulas        copulas of two inputs
     dependence     dependent inputs
     designs        registry of sampling designs
     law            the base class of all laws of an uncertain parameter

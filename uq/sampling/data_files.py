@@ -15,7 +15,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from uq.contract import Floats
-from uq.errors import nearest, nearest_file
+from uq.errors import InputError, nearest, nearest_file
 from uq.files.netcdf_files import refuse_tricks
 from uq.files.whole_files import node
 from uq.sampling.designs import IMPORTED
@@ -121,6 +121,20 @@ def numbers(text: str) -> Floats:
     values = np.array(text.split(), dtype=float)
     values.setflags(write=False)
     return values
+
+
+def read_column(path: Path, column: str) -> Floats:
+    """Return a column of a CSV or netCDF file.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, or the column is not one of finite numbers.
+    """
+    try:
+        return _read(path.parent, path.name, column)
+    except ValueError as fault:
+        raise InputError(f"{path}: {fault}") from None
 
 
 def _named(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str, str]]:

@@ -1,4 +1,4 @@
-"""Dependent inputs: Gaussian copula and conditional sampling given a subset of the inputs."""
+"""Dependent inputs drawn by their copula, also conditionally on a subset of the inputs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -9,10 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
+from uq.sampling.copulas import PairCopula
 from uq.sampling.input_faults import InputFault
 from uq.sampling.unit_cube import Points, hashed, inside, uniform
 
 Matrix = tuple[tuple[float, ...], ...]
+
+Joint = Matrix | PairCopula
+"""Rank correlations of inputs with a Gaussian copula, or another copula of two inputs."""
 
 _LEAST_EIGENVALUE = 1e-9
 _NEAREST = 2e-9  # distance from -1 or 1; the least eigenvalue of two inputs is then large enough
@@ -80,14 +84,14 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> InputFault | None:
     )
 
 
-def correlated(u: Points, ranks: Matrix) -> Points:
-    """Return points with the rank correlations of a Gaussian copula, from independent points.
+def correlated(u: Points, joint: Joint) -> Points:
+    """Return points that follow a copula, from independent points (Rosenblatt transformation).
 
     Parameters
     ----------
     u : ndarray, shape (n, k)
         Independent, in (0, 1); each row is mapped by itself.
-    ranks : tuple of tuple of float
+    joint : tuple of tuple of float or PairCopula
 
     Returns
     -------
@@ -96,7 +100,10 @@ def correlated(u: Points, ranks: Matrix) -> Points:
     """
     from scipy.special import ndtr, ndtri
 
-    factor = np.linalg.cholesky(normal_correlations(ranks))
+    if isinstance(joint, PairCopula):
+        first, second = map(np.ascontiguousarray, u.T)
+        return inside(np.stack([first, joint.conditional_quantile(second, first)], axis=1))
+    factor = np.linalg.cholesky(normal_correlations(joint))
     # Sums of contiguous columns: a matrix product may round a row according to its position.
     z = [ndtri(np.ascontiguousarray(column)) for column in u.T]
     points = u.copy()
@@ -151,15 +158,15 @@ def _most(ranks: Matrix) -> float:
     return 0.0
 
 
-def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) -> Points:
-    """Return paths with the rank correlations of a Gaussian copula, from independent paths.
+def conditional_paths(u: Points, joint: Joint, cells: Sequence[CellOf | None]) -> Points:
+    """Return paths whose rows follow a copula, from independent paths.
 
     Parameters
     ----------
     u : ndarray, shape (n, rows, k)
         In (0, 1). Along a path, each coordinate changes at most once, from its value in the first
         row to its value in the last row. Each path is mapped by itself.
-    ranks : tuple of tuple of float
+    joint : tuple of tuple of float or PairCopula
     cells : sequence of callable or None
         For each input; None if its law is continuous.
 
@@ -183,7 +190,9 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
     """
     from scipy.special import ndtr, ndtri
 
-    first = correlated(u[:, 0], ranks)
+    if isinstance(joint, PairCopula):
+        return _paths_of_pair(u, joint, cells)
+    first = correlated(u[:, 0], joint)
     low = ndtri(first)
     high = low.copy()
     for i, cell in enumerate(cells):
@@ -200,7 +209,7 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
         return taken.reshape(-1, order.shape[-1])
 
     orders, which = np.unique(order.reshape(-1, order.shape[-1]), axis=0, return_inverse=True)
-    matrix = normal_correlations(ranks)[orders[:, :, None], orders[:, None, :]]
+    matrix = normal_correlations(joint)[orders[:, :, None], orders[:, None, :]]
     rows = _Rows(
         np.asarray(np.linalg.cholesky(matrix)),
         which.ravel(),
@@ -212,6 +221,33 @@ def conditional_paths(u: Points, ranks: Matrix, cells: Sequence[CellOf | None]) 
     np.put_along_axis(scores, order, rows.scores().reshape(order.shape), axis=-1)
     first = first[:, None]
     return np.concatenate([first, np.where(changed, inside(ndtr(scores)), first)], axis=1)
+
+
+def _paths_of_pair(u: Points, copula: PairCopula, cells: Sequence[CellOf | None]) -> Points:
+    """Return paths of two inputs (`conditional_paths`).
+
+    A changed input is drawn given the value of the unchanged one: given its point, or, if its law
+    is discrete, given a point drawn uniformly from the subinterval with its value.
+    """
+    first = correlated(u[:, 0], copula)
+    changed = u[:, 1:] != u[:, :1]
+    fresh = [np.ascontiguousarray(u[:, -1, i]) for i in range(2)]
+    alone = []
+    for i, j in ((0, 1), (1, 0)):
+        given, cell = np.ascontiguousarray(first[:, j]), cells[j]
+        if cell is not None:
+            low, high = cell(given)
+            given = inside(low + fresh[j] * (high - low))
+        alone.append(copula.conditional_quantile(fresh[i], given))
+    # Where both have changed, the last to change is drawn first.
+    since = changed.sum(axis=1)
+    second_later = since[:, 1] < since[:, 0]
+    given = np.where(second_later, fresh[1], fresh[0])
+    last = copula.conditional_quantile(np.where(second_later, fresh[0], fresh[1]), given)
+    both = np.stack([np.where(second_later, last, given), np.where(second_later, given, last)], 1)
+    drawn = np.where(changed.all(axis=2, keepdims=True), both[:, None], np.stack(alone, 1)[:, None])
+    first = first[:, None]
+    return np.concatenate([first, np.where(changed, inside(drawn), first)], axis=1)
 
 
 @dataclass(frozen=True)

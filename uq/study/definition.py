@@ -139,7 +139,8 @@ class Study:
         if self.tied:
             parts.append({name: tied.equals for name, tied in self.tied.items()})
         if self.dependence:
-            parts.append(self.dependence.model_dump(exclude={"source"}))
+            given = self.dependence.model_dump(exclude={"source"}, exclude_defaults=True)
+            parts.append(given)
         if self.imported:
             parts.append(dict(self.imported))
         if self.design.rows_of_a_sample > 1:  # otherwise levels have no effect
@@ -275,7 +276,8 @@ def study_from_text(
     columns, more = columns_of_files(tables, folder)
     tables["settings"] = with_rows_of_files(tables["settings"], columns)
     entries, spoilt = read_entries(tables, columns)
-    faults += [*more, *spoilt, *dependence_faults(tables, entries), *of_model]
+    incomplete = any(fault.path[0] == "dependence" for fault in faults)
+    faults += [*more, *spoilt, *dependence_faults(tables, entries, incomplete), *of_model]
     if study_model is not None:
         faults += model_faults(study_model, data, tables)
         faults += input_faults(study_model, entries)

@@ -25,9 +25,20 @@ from pydantic import (
 )
 from pydantic_core.core_schema import no_info_plain_validator_function
 
-from uq.errors import nearest
+from uq.errors import InputError, nearest
 from uq.indices.methods import METHODS
+from uq.sampling.copulas import (
+    COPULAS,
+    LEAST_FREEDOM,
+    MOST_FREEDOM,
+    NORMAL,
+    PairCopula,
+    copula_of_rank,
+    copula_problem,
+)
+from uq.sampling.dependence import Joint, matrix_problem
 from uq.sampling.designs import DESIGNS, MAX_SAMPLES
+from uq.sampling.input_faults import InputFault
 from uq.sampling.law import LEVEL_SCHEMA, LIST, STRICT, Law, Level
 from uq.sampling.laws import any_law, law_of
 from uq.sampling.levels import MAX_ROWS_OF_A_SAMPLE
@@ -272,7 +283,7 @@ ENTRY: TypeAdapter[Law | Tied] = TypeAdapter(Entry)
 
 
 class DependenceTable(_Table):
-    """Rank correlations of uncertain parameters, by a Gaussian copula."""
+    """Rank correlations of uncertain parameters, and the copula that imposes them."""
 
     parameters: Annotated[tuple[str, ...], LIST, _DISTINCT, Field(min_length=2)] = Field(
         description="the dependent ones, in the order of the matrix; others are independent"
@@ -281,7 +292,64 @@ class DependenceTable(_Table):
         description="Spearman's, a row for each parameter; of the law itself, before it is cut"
         " into discrete values"
     )
+    copula: Annotated[str, _one_of("copula", COPULAS)] = Field(
+        NORMAL,
+        description="how the parameters depend on each other; other than normal for two only: "
+        + "; ".join(f'`"{name}"`, {tails}' for name, tails in COPULAS.items()),
+        json_schema_extra=lambda schema: schema.update(enum=list(COPULAS)),
+    )
+    degrees_of_freedom: float | None = Field(
+        None,
+        description="of Student's copula: the fewer, the more dependent its tails",
+        json_schema_extra={"minimum": LEAST_FREEDOM, "maximum": MOST_FREEDOM},
+    )
+    survival: bool = Field(
+        False, description="clayton and gumbel: lower and upper tails exchanged (survival copula)"
+    )
     source: str = Field("", description="where the numbers come from")
+
+    @property
+    def pair(self) -> PairCopula | None:
+        """The copula of two parameters; None for the normal one.
+
+        Raises
+        ------
+        InputError
+            When the table is not valid: the study of a result may be from anyone.
+        """
+        if self.copula == NORMAL:
+            return None
+        if (wrong := self.fault) is not None:
+            raise InputError(wrong.within("dependence").line)
+        rank = self.rank_correlation[0][1]
+        return copula_of_rank(self.copula, rank, self.degrees_of_freedom, self.survival)
+
+    @property
+    def joint(self) -> Joint:
+        """What the parameters are drawn from: rank correlations, or the copula of a pair."""
+        return self.pair or self.rank_correlation
+
+    @property
+    def fault(self) -> InputFault | None:
+        """The fault of the correlations and the copula together; None if they are valid."""
+        if wrong := matrix_problem(self.parameters, self.rank_correlation):
+            return wrong.within("rank_correlation")
+        return copula_problem(
+            self.parameters,
+            self.rank_correlation[0][1],
+            self.copula,
+            self.degrees_of_freedom,
+            self.survival,
+        )
+
+    @property
+    def words(self) -> str:
+        """The copula in words, "" for the normal one."""
+        if self.copula == NORMAL:
+            return ""
+        if self.degrees_of_freedom is not None:
+            return f"Student's copula with {self.degrees_of_freedom:g} degrees of freedom"
+        return f"{'survival ' * self.survival}{self.copula.capitalize()} copula"
 
 
 _NearlyAll = Annotated[float, Field(gt=0, le=0.999999999)]  # more needs over 10^9 rows

@@ -9,6 +9,7 @@ import numpy as np
 from uq.contract import Model, Parameter
 from uq.errors import nearest
 from uq.indices.methods import fed_by
+from uq.sampling.copulas import NORMAL, copula_problem
 from uq.sampling.data_files import Columns, columns_of_files, numbers
 from uq.sampling.dependence import matrix_problem
 from uq.sampling.designs import DESIGNS, IMPORTED
@@ -137,8 +138,19 @@ def _followed(entry: Law | Tied) -> str | None:
     return entry.equals if isinstance(entry, Tied) else entry.times
 
 
-def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[InputFault]:
-    """Yield the faults of [dependence], including conflicts with the design."""
+def dependence_faults(
+    tables: Mapping[str, Any], entries: Entries, incomplete: bool
+) -> Iterator[InputFault]:
+    """Yield the faults of [dependence], including conflicts with the design.
+
+    Parameters
+    ----------
+    tables : dict
+        Valid entries of a study file.
+    entries : dict of str to Law or Tied
+    incomplete : bool
+        Whether entries of [dependence] are invalid; its copula is then not checked.
+    """
     table = tables["dependence"]
     if not table:
         return
@@ -155,8 +167,19 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[I
         seen = ", ".join(f"{name} is {level}" for name, level in levels.items())
         problem = f"must be inputs of one level: {seen}"
         yield InputFault(("dependence", "parameters"), problem)
-    if names and ranks is not None and (wrong := matrix_problem(tuple(names), ranks)):
-        yield wrong.within("dependence", "rank_correlation")
+    if names and ranks is not None:
+        if wrong := matrix_problem(tuple(names), ranks):
+            yield wrong.within("dependence", "rank_correlation")
+        elif not incomplete and (
+            wrong := copula_problem(
+                tuple(names),
+                ranks[0][1],
+                table.get("copula", NORMAL),
+                table.get("degrees_of_freedom"),
+                table.get("survival", False),
+            )
+        ):
+            yield wrong.within("dependence")
     method = tables["design"].get("method")
     if method in IMPORTED:
         yield InputFault(("dependence",), "imported rows carry their own dependence; leave it out")

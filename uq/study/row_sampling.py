@@ -127,7 +127,7 @@ def _drawn(study: "Study", start: int, stop: int) -> Floats:
         for law, ends in zip(laws, bounds, strict=True)
     ]
     paths = unit[:, columns].reshape(-1, size, len(columns))
-    conditional = conditional_paths(paths, study.dependence.rank_correlation, cells)
+    conditional = conditional_paths(paths, study.dependence.joint, cells)
     unit[:, columns] = conditional.reshape(-1, len(columns))
     return _by_their_laws(study, unit[start - size * first : stop - size * first])
 
@@ -179,7 +179,7 @@ def physical(study: "Study", unit: Floats) -> Floats:
     if study.dependence is not None:
         columns = _dependent(study)
         unit = unit.copy()
-        unit[:, columns] = correlated(unit[:, columns], study.dependence.rank_correlation)
+        unit[:, columns] = correlated(unit[:, columns], study.dependence.joint)
     return _by_their_laws(study, unit)
 
 

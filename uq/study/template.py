@@ -10,6 +10,7 @@ from pydantic import BaseModel
 
 from uq.contract import Model, Parameter
 from uq.errors import InputError, nearest
+from uq.sampling.copulas import COPULAS, NORMAL
 from uq.sampling.designs import DESIGNS, PLAIN, Design
 from uq.sampling.law import Law
 from uq.sampling.laws import LAWS, law_of
@@ -167,6 +168,7 @@ def _menu() -> Iterator[str]:
     yield "# [dependence]"
     yield '# parameters = ["one", "other"]'
     yield "# rank_correlation = [[1.0, 0.5], [0.5, 1.0]]"
+    yield f"# copula = {toml(NORMAL)}  # for two: {', '.join(COPULAS)}"
 
 
 def _settings(model: Model) -> Iterator[str]:

@@ -11,7 +11,7 @@ def lognormal(median, sigma, level="own"):
     return {"distribution": "lognormal", "median": median, "sigma": sigma, "level": level}
 
 
-def wear(samples=6000, seed=3, rate="own", depth="own", analysis=None, **design):
+def wear(samples=6000, seed=3, rate="own", depth="own", analysis=None, dependence=None, **design):
     """Return a result: life = depth / rate, both lognormal."""
     asked = {"outputs": ["life"], "thresholds": {"life": [1e6]}}
     return computed(
@@ -22,6 +22,7 @@ def wear(samples=6000, seed=3, rate="own", depth="own", analysis=None, **design)
                 "uncertain": {"rate": lognormal(*RATE, rate), "depth": lognormal(*DEPTH, depth)},
                 "analysis": asked | (analysis or {}),
             }
+            | ({"dependence": dependence} if dependence else {})
         )
     )
 

@@ -173,6 +173,9 @@ def test_ties_and_rank_correlations_are_stated():
     comparison = compared(first, study({"x1": UNIFORM, "x2": UNIFORM}, {"dependence": together}))
     assert [(c["kind"], c["b"]) for c in comparison["changed"]] == [("dependence", "x1, x2")]
     assert comparison["only"] is None
+    gumbel = study({"x1": UNIFORM, "x2": UNIFORM}, {"dependence": together | {"copula": "gumbel"}})
+    (change,) = compared(first, gumbel)["changed"]
+    assert (change["kind"], change["b"]) == ("dependence", "x1, x2 (Gumbel copula, 0.5)")
 
 
 def test_rows_that_never_end_or_fail_are_no_numbers():

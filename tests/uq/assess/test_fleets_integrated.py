@@ -13,6 +13,7 @@ from uq.assess.fleet import fleet_of
 from uq.assess.fleet_units import units_of
 from uq.result.elements import elements_of
 from uq.result.result import Result
+from uq.sampling.copulas import copula_of_rank
 from uq.stats.counting import at_most
 from uq.stats.dependent_rows import INDEPENDENT
 
@@ -166,6 +167,30 @@ def test_a_shared_input_that_depends_on_another_is_integrated():
         kept = fleet.by[1.0][1].estimate
         assert kept.low < truth < kept.high
         assert kept.high - kept.low < 0.12
+
+
+@pytest.mark.slow
+def test_a_shared_input_is_integrated_given_another_by_their_copula():
+    """Against quadrature over both shared inputs."""
+    shared = {"b": B_SHARED, "c": B_SHARED}
+    tables = {"dependence": TIED | {"copula": "clayton"}}
+    copula = copula_of_rank("clayton", 0.6)
+    ds = scaled_fleet({"a": lognormal(OWN, 1.0)} | shared, samples=300, units=3, **tables)
+    fleet = fleet_of(Result(ds), 2, [1.0])
+    assert "b" in fleet.integrated
+    z = np.linspace(-6, 6, 401)
+    weight = np.exp(-(z**2) / 2)
+    kept = []
+    for at in z:
+        c = special.ndtri(
+            copula.conditional_quantile(special.ndtr(z), np.full(401, special.ndtr(at)))
+        )
+        p = special.ndtr(SHARED * (2 * at - c / 2) / OWN)
+        kept.append(np.average((1 - p) ** 2, weights=weight))
+    truth = np.average(kept, weights=weight)
+    estimate = fleet.by[1.0][1].estimate
+    assert estimate.low < truth < estimate.high
+    assert estimate.high - estimate.low < 0.12
 
 
 def test_what_is_not_integrated_says_why():

@@ -164,10 +164,11 @@ TRUNCATED = {"distribution": "uniform", "lower": 0.2, "upper": 3.0}
     [
         (SCALING, {"dependence": RANKS}),
         (SCALING | {"a": TRUNCATED}, {"dependence": RANKS}),
+        (SCALING, {"dependence": RANKS | {"copula": "gumbel"}}),
         (SCALING | {"a": TRUNCATED | {"times": "c"}, "c": lognormal(0.4)}, {}),
         (SCALING | {"c": {"equals": "a"}}, {}),
     ],
-    ids=["correlated", "correlated, another law", "multiple", "tied"],
+    ids=["correlated", "correlated, another law", "gumbel", "multiple", "tied"],
 )
 def test_each_by_its_law_given_the_rest(uncertain, tables):
     """The plain shares of many rows lie in the intervals."""

@@ -52,6 +52,12 @@ def test_a_sum_of_uniform_logarithms_is_a_trapezium():
     assert np.abs(law_of_sum(terms).below(y) - truth).max() < 1e-10
 
 
+def by_copula(name, **options):
+    """Return a table [dependence] of `a`, which only scales, and `z`."""
+    ranks = {"parameters": ["a", "z"], "rank_correlation": [[1.0, 0.7], [0.7, 1.0]]}
+    return {"dependence": ranks | {"copula": name, **options}}
+
+
 CASES = {
     "one": (WHOLE, {}, ("a",)),
     "signs mixed": (
@@ -83,6 +89,11 @@ CASES = {
         {"dependence": {"parameters": ["z", "b"], "rank_correlation": [[1.0, 0.8], [0.8, 1.0]]}},
         ("b",),
     ),
+    "student": (WHOLE, by_copula("student", degrees_of_freedom=3.0), ("a",)),
+    "clayton": (WHOLE, by_copula("clayton"), ("a",)),
+    "survival clayton": (WHOLE, by_copula("clayton", survival=True), ("a",)),
+    "gumbel": (WHOLE, by_copula("gumbel"), ("a",)),
+    "frank": (WHOLE, by_copula("frank"), ("a",)),
     "listed": (
         WHOLE | {"c": {"distribution": "discrete-choice", "values": [1.0, 4.0]}},
         {},
@@ -113,10 +124,11 @@ def test_a_few_rows_say_what_very_many_say(case):
         assert rows.quantile(probability.value).value == pytest.approx(time, rel=1e-9)
 
 
-def test_the_law_of_a_row_is_the_conditional_distribution():
+@pytest.mark.parametrize("copula", [{}, {"copula": "gumbel"}, {"copula": "clayton"}], ids=str)
+def test_the_law_of_a_row_is_the_conditional_distribution(copula):
     """Rows with the same z: the life of each is its law, correlation and all."""
     ranks = [[1.0, 0.6], [0.6, 1.0]]
-    tables = {"dependence": {"parameters": ["z", "a"], "rank_correlation": ranks}}
+    tables = {"dependence": {"parameters": ["z", "a"], "rank_correlation": ranks} | copula}
     element = populated(computed(scaled_study(WHOLE, samples=20_000, **tables)))[0].element
     shares = element.law.below(element.values, 1.5)
     hits = element.plain.below(1.5)

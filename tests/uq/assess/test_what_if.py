@@ -91,9 +91,29 @@ CHANGES = {
 RANKS = {"parameters": ["a", "z"], "rank_correlation": [[1.0, 0.4], [0.4, 1.0]]}
 
 
-@pytest.mark.parametrize("case", [*CHANGES, "correlation"])
+COPULAS = {
+    "to clayton": ({}, {"copula": "clayton"}),
+    "from frank": ({"copula": "frank"}, {"copula": "normal"}),
+    "from gumbel": ({"copula": "gumbel"}, {"copula": "normal"}),
+    "of clayton": (
+        {"copula": "clayton"},
+        {"copula": "clayton", "rank_correlation": [[1.0, 0.5], [0.5, 1.0]]},
+    ),
+    "from student": (
+        {"copula": "student", "degrees_of_freedom": 4.0},
+        {"copula": "gumbel", "survival": True},
+    ),
+}
+
+
+@pytest.mark.parametrize("case", [*CHANGES, *COPULAS, "correlation"])
 def test_a_fresh_run_of_the_other_study_agrees(result, case):
-    if case == "correlation":
+    if case in COPULAS:
+        before, after = COPULAS[case]
+        result = computed(study(dependence=RANKS | before))
+        changes = {f"dependence.{key}": value for key, value in after.items()}
+        fresh = study(samples=20_000, dependence=RANKS | after)
+    elif case == "correlation":
         result = computed(study(dependence=RANKS))
         ranks = [[1.0, 0.6], [0.6, 1.0]]
         changes = {"dependence.rank_correlation": ranks}
@@ -112,6 +132,34 @@ def test_a_fresh_run_of_the_other_study_agrees(result, case):
         ):
             half = (line[f"{column}_high"] - line[f"{column}_low"]) / 2
             assert abs(line[column] - value) < 2 * half, (name, column)
+
+
+def test_copulas_that_rows_cannot_tell_are_refused():
+    rows = computed(study(dependence=RANKS))
+    student = {"dependence.copula": "student", "dependence.degrees_of_freedom": 2.0}
+    changed = reweighted_summary(Result(rows), student)
+    # Rows of a normal copula have no tails of Student's; the life needs no weights.
+    assert any(re.match("y: .*Pareto k", note) for note in changed.summary.notes)
+    assert [*changed.summary.outputs] == ["life"]
+    for changes, message in (
+        ({"dependence.copula": "student"}, "what if: .*degrees_of_freedom: is missing"),
+        ({"dependence.copula": "normall"}, "no such copula; did you mean 'normal'"),
+        (
+            {"dependence.copula": "clayton", "dependence.rank_correlation": [[1, -0.4], [-0.4, 1]]},
+            "must be between 0.001 and 0.999",
+        ),
+        ({"dependence.parameters": ["z", "a"]}, "survival of dependence can|rows of its own"),
+    ):
+        with pytest.raises(InputError, match=message):
+            what_if(rows, changes)
+    with pytest.raises(InputError, match=r"this study has no \[dependence\] whose copula"):
+        what_if(computed(study(samples=100)), {"dependence.copula": "clayton"})
+
+
+def test_another_copula_drops_the_options_of_the_former():
+    ranks = RANKS | {"copula": "student", "degrees_of_freedom": 4.0}
+    changes = {"dependence.survival": True, "dependence.copula": "gumbel"}
+    assert np.isfinite(what_if(computed(study(dependence=ranks)), changes).loc["life", "q0.5"])
 
 
 def test_lives_that_never_end_stay_so():

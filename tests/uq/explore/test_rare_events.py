@@ -10,6 +10,8 @@ from scipy import integrate, stats
 import uq as api
 from uq.explore.rare_events import rare_event
 from uq.explore.subset_simulation import subset_simulation
+from uq.sampling.copulas import copula_of_rank
+from uq.sampling.unit_cube import inside
 from uq.study.row_sampling import row_block
 
 LIFE = stats.lognorm(s=np.hypot(0.5, 0.2), scale=1e6)
@@ -96,6 +98,19 @@ def test_the_typical_row_of_the_event_is_shown():
 RANK = 0.6
 H = 0.01  # (2 - a)(2.5 - b) > 5 - H, a and b uniform: an integral over a
 CORNER = integrate.quad(lambda a: (H - 2.5 * a) / (2.0 - a), 0.0, H / 2.5)[0]
+
+
+def beyond_by_gumbel(total):
+    """Return P(x1 + x2 > total) of standard normal x1 and x2 with a Gumbel copula."""
+    copula = copula_of_rank("gumbel", RANK)
+
+    def density(z):
+        u, v = (inside(np.array([stats.norm.cdf(at)])) for at in (z, total * np.sqrt(2.0) - z))
+        return stats.norm.pdf(z) * (1 - copula.conditional(v, u)[0])
+
+    return integrate.quad(density, -8.0, 8.0, limit=400)[0]
+
+
 TIES = [
     # x1 and x2 standard normal with the correlation of a Gaussian copula; the same; one a multiple.
     (
@@ -103,6 +118,16 @@ TIES = [
         {"parameters": ["x1", "x2"], "rank_correlation": [[1.0, RANK], [RANK, 1.0]]},
         5.0,
         stats.norm.sf(5.0 / np.sqrt(1.0 + 2.0 * np.sin(np.pi * RANK / 6.0))),
+    ),
+    (
+        PLANE,
+        {
+            "parameters": ["x1", "x2"],
+            "rank_correlation": [[1.0, RANK], [RANK, 1.0]],
+            "copula": "gumbel",
+        },
+        5.0,
+        beyond_by_gumbel(5.0),
     ),
     (PLANE | {"x2": {"equals": "x1"}}, None, 5.0, stats.norm.sf(5.0 / np.sqrt(2.0))),
     (
@@ -118,7 +143,7 @@ TIES = [
 
 
 @pytest.mark.parametrize(
-    ("inputs", "dependence", "threshold", "truth"), TIES, ids=("copula", "tied", "scaled")
+    ("inputs", "dependence", "threshold", "truth"), TIES, ids=("normal", "gumbel", "tied", "scaled")
 )
 def test_inputs_that_depend_on_each_other_do_so_in_a_rare_event(
     inputs, dependence, threshold, truth

@@ -6,11 +6,13 @@ from asked_indices import sensitivities
 from computed import computed, study_of, with_output, with_status
 from dependent_studies import PAIR, assert_near, entry_of, weighted
 from input_studies import UNIFORM, refusal, tables
-from scipy import stats
+from scipy import special, stats
 
 from benchmarks.coverage import dependent, dependent_effects, problems
 from benchmarks.coverage.tally import LOW, OURS
 from uq.errors import InputError
+from uq.sampling.copulas import copula_of_rank
+from uq.sampling.unit_cube import inside
 
 
 def test_shapley_effects_of_dependent_inputs_are_the_known_ones():
@@ -66,6 +68,53 @@ def test_shapley_effects_of_a_factor_and_a_truncated_law_are_the_known_ones():
 
     truth = dict(zip(("a", "b", "c"), dependent_effects.shares(explained, 3), strict=True))
     assert_near(effects, truth)
+
+
+@pytest.mark.parametrize(
+    "copula",
+    [
+        {"copula": "clayton"},
+        {"copula": "clayton", "survival": True},
+    ],
+    ids=str,
+)
+def test_shapley_effects_under_a_copula_are_those_of_quadrature(copula):
+    # x1 + x2 + 2 x3 + x1 x3 of normal inputs, x1 and x3 dependent.
+    pair = {"parameters": ["x1", "x3"], "rank_correlation": [[1.0, 0.7], [0.7, 1.0]]} | copula
+    laws = dict.fromkeys(dependent.NAMES[:3], dependent.NORMAL)
+    given = tables(laws, "shapley", 8192, "sums", dependence=pair)
+    interacting = study_of(given | {"analysis": {"outputs": ["interacting"]}}, dependent.NAME)
+
+    def effects(drawn_given):
+        """Return the effects by the trapezoidal rule over scores of a draw given another."""
+        z = np.linspace(-7.5, 7.5, 601)
+        weight = stats.norm.pdf(z) / stats.norm.pdf(z).sum()
+        first, other = np.repeat(z, len(z)), np.tile(z, len(z))
+        drawn = stats.norm.ppf(inside(drawn_given(special.ndtr(other), special.ndtr(first))))
+        by_first, by_third = (
+            (a + 2 * c + a * c).reshape(len(z), -1) for a, c in ((first, drawn), (drawn, first))
+        )
+
+        def variance(values, worth):
+            return worth @ (values - worth @ values) ** 2
+
+        explained = {
+            (): 0.0,
+            (0,): variance(by_first @ weight, weight),
+            (2,): variance(by_third @ weight, weight),
+            (0, 2): variance(by_first.ravel(), np.outer(weight, weight).ravel()),
+        }
+
+        def value(inputs):
+            of_pair = tuple(i for i in sorted(inputs) if i != 1)
+            return explained[of_pair] + (1 in inputs)
+
+        return dict(zip(("x1", "x2", "x3"), dependent_effects.shares(value, 3), strict=True))
+
+    truth = effects(interacting.dependence.pair.conditional_quantile)
+    normal = effects(copula_of_rank("normal", 0.7).conditional_quantile)
+    assert max(abs(truth[name] - normal[name]) for name in truth) > 0.02
+    assert_near(entry_of(computed(interacting))["shapley"], truth)
 
 
 def test_linear_models_of_correlated_normal_inputs_have_the_published_effects():

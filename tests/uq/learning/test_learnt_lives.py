@@ -7,7 +7,7 @@ from scipy import stats
 
 from uq.assess.integrated_inputs import elements_with_laws
 from uq.assess.row_inputs import inputs_of
-from uq.assess.scale_laws import ConditionalScale, PosteriorScale
+from uq.assess.scale_laws import ConditionalScale, NormalGiven, PosteriorScale
 from uq.assess.weighted_mixture import WeightedMixture
 from uq.explore.updating import update
 from uq.learning.inspections import read_tables
@@ -85,7 +85,7 @@ def test_without_inspections_it_is_the_law_of_the_study(exponent):
     of = ("rate",), inputs.laws["rate"], inputs.bounds["rate"], exponent, inputs.values["rate"]
     lives = np.append(np.linspace(5e5, 2e6, 48), [np.inf, np.nan])
     scale = PosteriorScale(*of, np.tile(np.linspace(-6, 6, 97), (50, 1)))
-    study = ConditionalScale(*of, mean=np.zeros(50))
+    study = ConditionalScale(*of, NormalGiven(np.zeros(50), 1.0))
     for time in (4e5, 1e6, 3e6):
         np.testing.assert_allclose(scale.below(lives, time), study.below(lives, time), atol=1e-8)
 

@@ -9,6 +9,7 @@ import pytest
 from command_line import everything, strict_json
 from computed import computed, study_of
 from learnt_studies import DEPTH, RATE, exactly, lognormal, measured, wear
+from scipy import special
 
 from uq.errors import InputError, RunError
 from uq.explore.updating import update
@@ -18,6 +19,7 @@ from uq.learning.importance import own_rows
 from uq.learning.posterior_result import as_unit, prior_of
 from uq.result.result import Result
 from uq.result.result_file import open_result
+from uq.sampling.copulas import copula_of_rank
 
 FAR = measured(2e7, cv=0.05)
 """Five standard deviations from what the study expects."""
@@ -62,6 +64,32 @@ def test_what_contradicts_the_rows_ends_in_the_right_posterior(result, new_rows)
 @pytest.mark.slow
 def test_what_contradicts_the_rows_more_ends_in_the_right_posterior(result):
     check(result, FAR, update(result, FAR, **SMALL), *exactly([2e7], cv=0.05))
+
+
+def under_copula(life, cv):
+    """Return means and sds of the logarithms of rate and depth given a life, by quadrature."""
+    z = np.linspace(-6.5, 6.5, 801)
+    first, second = (grid.ravel() for grid in np.meshgrid(z, z, indexing="ij"))
+    copula = copula_of_rank("clayton", 0.6)
+    logs = np.log(RATE[0]) + RATE[1] * first, np.log(DEPTH[0]) + DEPTH[1] * second
+    error = (np.log(life) - (logs[1] - logs[0])) / np.sqrt(np.log1p(cv**2))
+    density = copula.log_density(special.ndtr(first), special.ndtr(second))
+    weight = np.exp(density - (first**2 + second**2 + error**2) / 2)
+    mean = np.array([np.average(log, weights=weight) for log in logs])
+    squares = np.array([np.average(log**2, weights=weight) for log in logs])
+    return mean, np.sqrt(squares - mean**2)
+
+
+@pytest.mark.parametrize("new_rows", [{}, SMALL], ids=["rows", "new rows"])
+def test_the_copula_of_the_inputs_is_part_of_the_prior(new_rows):
+    pair = {"parameters": ["rate", "depth"], "rank_correlation": [[1.0, 0.6], [0.6, 1.0]]}
+    life, cv = (2.5e6, 0.1) if not new_rows else (6e6, 0.1)
+    inspected = measured(life, cv=cv)
+    prior = wear(samples=20_000 if not new_rows else 400, dependence=pair | {"copula": "clayton"})
+    means, sds = log_rate_and_depth(update(prior, inspected, **new_rows))
+    mean, sd = under_copula(life, cv)
+    assert np.abs((means - mean) / sd).max() < 0.15
+    assert np.abs(sds / sd - 1).max() < 0.12
 
 
 def check(result, inspections, ds, mean, cov):

@@ -1,6 +1,7 @@
 """Dependent inputs drawn given some of them."""
 
 import numpy as np
+import pytest
 from computed import study_of
 from dependent_studies import PAIR
 from hypothesis import given, settings
@@ -9,6 +10,13 @@ from input_studies import BELL, UNIFORM, inputs_of, tables
 from scipy import stats
 
 from benchmarks.coverage import dependent
+from uq.sampling.copulas import (
+    ClaytonPair,
+    FrankPair,
+    GumbelPair,
+    StudentPair,
+    SurvivalPair,
+)
 from uq.sampling.dependence import conditional_paths
 from uq.sampling.designs import DESIGNS
 from uq.study.row_sampling import row_block, rows
@@ -68,6 +76,54 @@ def test_discrete_inputs_are_known_by_their_values_not_by_what_is_behind_them():
             assert abs(scores.mean() - truth) < 4 * scores.std() / np.sqrt(drawn.sum())
 
 
+@pytest.mark.parametrize(
+    "copula",
+    [ClaytonPair(2.0), GumbelPair(2.0), FrankPair(-5.0), StudentPair(0.6, 3.0)]
+    + [SurvivalPair(ClaytonPair(2.0))],
+    ids=str,
+)
+def test_paths_of_a_pair_follow_its_copula_given_what_has_not_changed(copula):
+    u = paths(40_000)  # with a third input, so that the pair also stays as it is
+    drawn_paths = conditional_paths(u[..., :2], copula, (None, None))
+    for row in range(4):
+        first, second = (column.copy() for column in drawn_paths[:, row].T)
+        for a, b in ((0.1, 0.1), (0.5, 0.3), (0.9, 0.9)):
+            truth = copula.joint(np.array([a]), np.array([b]))[0]
+            share = ((first <= a) & (second <= b)).mean()
+            assert abs(share - truth) < 4.5 * np.sqrt(truth / len(u))
+    for kept, drawn in ((0, 1), (1, 0)):
+        alone = (u[:, 1:, kept] == u[:, :1, kept]) & (u[:, 1:, drawn] != u[:, :1, drawn])
+        for row in (1, 2):
+            here = alone[:, row - 1]
+            others = drawn_paths[here, row, kept]
+            np.testing.assert_array_equal(others, drawn_paths[here, 0, kept])
+            # Given the unchanged one, the probability of the drawn one is uniform, and new.
+            share = copula.conditional(drawn_paths[here, row, drawn].copy(), others.copy())
+            before = copula.conditional(drawn_paths[here, 0, drawn].copy(), others.copy())
+            assert stats.kstest(share, "uniform").pvalue > 1e-4
+            for other in (others, before):
+                assert abs(stats.spearmanr(share, other).statistic) < 4 / np.sqrt(here.sum())
+    both = (u[:, 3] != u[:, 0])[:, :2].all(axis=1)
+    assert both.all()
+    assert abs(stats.spearmanr(drawn_paths[:, 3, 0], drawn_paths[:, 0, 0]).statistic) < 0.02
+
+
+def test_a_discrete_input_of_a_pair_is_known_by_its_value():
+    """Given the sign of one, the other has the mean of rows with this sign."""
+    copula, u = ClaytonPair(2.0), paths(40_000, d=2)
+    drawn_paths = conditional_paths(u, copula, (signs, None))
+    alone = u[:, 1, 0] == u[:, 0, 0]
+    p, w = np.random.default_rng(1).random((2, 400_000))
+    v = copula.conditional_quantile(w, p)
+    for above in (False, True):
+        rows_above = alone & ((drawn_paths[:, 0, 0] > 0.5) == above)
+        drawn, before = drawn_paths[rows_above, 1, 1], drawn_paths[rows_above, 0, 1]
+        assert abs(stats.spearmanr(drawn, before).statistic) < 4 / np.sqrt(len(drawn))
+        truth = v[(p > 0.5) == above]
+        assert stats.ks_2samp(drawn, truth).pvalue > 1e-4
+        assert abs(drawn.mean() - truth.mean()) < 4 * drawn.std() / np.sqrt(len(drawn))
+
+
 MIXED = {
     "x1": {"distribution": "integer-range", "lower": 0, "upper": 1},
     "x2": UNIFORM | {"times": "x3"},
@@ -76,10 +132,15 @@ MIXED = {
 }
 
 
-@settings(max_examples=10)
-@given(cuts=st.lists(st.integers(0, 16 * 4), max_size=4))
-def test_paths_of_dependent_inputs_are_the_same_however_they_are_cut(cuts):
-    study = study_of(tables(MIXED, "shapley", 16, dependence=PAIR))
+@settings(max_examples=20)
+@given(
+    cuts=st.lists(st.integers(0, 16 * 4), max_size=4),
+    copula=st.sampled_from(
+        [{}, {"copula": "frank"}, {"copula": "student", "degrees_of_freedom": 4.0}]
+    ),
+)
+def test_paths_of_dependent_inputs_are_the_same_however_they_are_cut(cuts, copula):
+    study = study_of(tables(MIXED, "shapley", 16, dependence=PAIR | copula))
     edges = [0, *sorted(cuts), 64]
     parts = [row_block(study, i, j).x for i, j in zip(edges, edges[1:], strict=False)]
     assert np.concatenate(parts).tobytes() == row_block(study, 0, 64).x.tobytes()

@@ -47,7 +47,8 @@ def input_tables(result: Result) -> Iterator[HtmlTable]:
             for j, second in enumerate(names[:i])
         ]
         source = study.dependence.source
-        caption = f"Rank correlations{': ' if source else ''}{source}"
+        copula = f", {study.dependence.words}" if study.dependence.words else ""
+        caption = f"Rank correlations{copula}{': ' if source else ''}{source}"
         yield HtmlTable(caption, ("pair", "stated"), rows)
 
 

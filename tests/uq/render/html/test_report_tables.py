@@ -202,8 +202,22 @@ def test_an_input_has_one_prefix_in_sentences_tables_figures_and_controls():
     assert event.over_unit.name == "pm s⁻¹"
 
 
-def test_fixed_inputs_have_units_and_correlations_a_source():
-    dependence = {
+@pytest.mark.parametrize(
+    ("copula", "caption"),
+    [
+        ({}, "Rank correlations: a guess"),
+        (
+            {"copula": "clayton", "survival": True},
+            "Rank correlations, survival Clayton copula: a guess",
+        ),
+        (
+            {"copula": "student", "degrees_of_freedom": 4.0},
+            "Rank correlations, Student's copula with 4 degrees of freedom: a guess",
+        ),
+    ],
+)
+def test_fixed_inputs_have_units_and_correlations_a_source(copula, caption):
+    dependence = copula | {
         "parameters": ["rate", "threshold"],
         "rank_correlation": [[1.0, 0.5], [0.5, 1.0]],
         "source": "a guess",
@@ -225,7 +239,7 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
     laws, ranks = input_tables(Result(ds))
     fixed = fixed_inputs(Result(ds))
     assert lines(laws)["threshold"]["law"] == "uniform: lower 0.1 m s⁻¹, upper 0.2 m s⁻¹"
-    assert ranks.caption == "Rank correlations: a guess"
+    assert ranks.caption == caption
     assert [[cell.text for cell in row] for row in ranks.rows] == [["threshold, rate", "0.5"]]
     assert lines(fixed)["depth"]["value"] == "250\u00a0µm"
 
