@@ -94,8 +94,9 @@ def emulate(
 
     Examples
     --------
-    >>> emulator = uq.emulate("results/ishigami.nc")
-    >>> emulator.elements["y"][0].regression.q2 > 0.99
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> emulator = uq.emulate(ds.isel(row=slice(60)))
+    >>> emulator.elements["life"][0].regression.q2 > 0.99
     True
     """
     result = Result.of(result)

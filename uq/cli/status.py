@@ -15,7 +15,7 @@ from uq.errors import InputError
 from uq.execution.amending import checksum_holds, recompute
 from uq.execution.loading import load_model
 from uq.execution.recomputation import other_versions
-from uq.execution.status import RunStatus, run_status
+from uq.execution.row_folder import RunStatus, run_status
 from uq.explore.single_rows import RowAgain, row_again, with_trajectory
 from uq.machines.compilation import compilation
 from uq.result import result_file

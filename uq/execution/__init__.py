@@ -9,7 +9,6 @@ Reading order; each part imports only those above it:
     row_folder      folder beside a result that keeps its rows, and the records of its journal
     isolation       rows computed in separate processes, in case they crash or hang
     disk_store      crash-safe storage of arriving rows on disk
-    status          progress of a run, even one under way
     dask_task       the task of a dask worker: plain data in, plain data out
     scaling_checks  check the scaling exponents declared by an external machine against
     resuming        start or resume a run whose rows are kept on disk

@@ -1,9 +1,11 @@
-"""Folder beside a result that keeps its rows, and the records of its journal."""
+"""Folder beside a result that keeps its rows, the records of its journal, and its progress."""
 
 import shutil
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated, Any, Literal, NamedTuple
@@ -13,10 +15,11 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from uq.errors import InputError, RunError
-from uq.execution.tally import Block, Failures
+from uq.execution.tally import Block, Failures, by_status
 from uq.files.interrupts import undone
 from uq.files.journal import Record, read
 from uq.files.whole_files import file_behind, flush, reason, remove_empty
+from uq.result import result_file
 
 Count = Annotated[int, Field(ge=0, lt=2**62)]
 
@@ -303,3 +306,80 @@ def clear(folder: Path) -> None:
     for file in folder.iterdir():
         if file.name != LOCK and file.is_file():
             file.unlink()
+
+
+@dataclass(frozen=True)
+class RunStatus:
+    """Progress of a run.
+
+    Attributes
+    ----------
+    output : str
+        Path of the result.
+    state : {"complete", "running", "interrupted"}
+    rows : int
+        Total; of them `done`, `failed` and `left`.
+    status : dict of str to int
+        Status label -> rows.
+    rate : float or None
+        Of the latest run [rows/s]; None if unknown.
+    seconds_left : float or None
+        Until completion at this rate [s].
+    process : dict or None
+        ``host`` and ``pid`` of the process that is writing.
+    complete_rows : int or None
+        Rows of an existing result.
+    """
+
+    output: str
+    state: str
+    rows: int
+    done: int
+    failed: int
+    left: int
+    status: Mapping[str, int]
+    rate: float | None
+    seconds_left: float | None
+    process: dict[str, Any] | None
+    complete_rows: int | None
+
+
+def run_status(path: Path) -> RunStatus:
+    """Return the progress of the run of a result.
+
+    Parameters
+    ----------
+    path : Path
+        Of the result, existing or not.
+
+    Raises
+    ------
+    InputError
+        When there are neither a result nor rows kept for one.
+    """
+    folder = folder_of(path)
+    run_history = history(folder)
+    held, process = holder(folder), None
+    if held and is_held(folder):
+        process = {"host": computer(held[0]), "pid": held[1]}
+    complete_rows = None
+    if path.is_file() or not run_history:
+        ds = result_file.open_result(path)
+        complete_rows = ds.sizes["row"]
+        if not run_history or run_history.complete:
+            failed, status = int(result_file.failed(ds).sum()), by_status(ds["status"].values)
+            counts = complete_rows, complete_rows, failed, 0, status
+            return RunStatus(str(path), "complete", *counts, None, None, process, complete_rows)
+    kept, latest = run_history.kept, run_history.latest
+    # From the first rows on, if there are others: before them, the model may have been compiled.
+    began, since = (latest[0].time, latest[1:]) if latest[1:] else (run_history.run.time, latest)
+    seconds = since[-1].time - began if since else 0.0
+    rate = sum(record.rows for record in since) / seconds if seconds > 0 else None
+    total, done = run_history.run.rows, sum(record.rows for record in kept)
+    failed, left = sum(record.failed for record in kept), total - done
+    by_label: Counter[str] = Counter()
+    for record in kept:
+        by_label.update(record.status)
+    state, seconds_left = "running" if process else "interrupted", left / rate if rate else None
+    counts = total, done, failed, left, dict(by_label)
+    return RunStatus(str(path), state, *counts, rate, seconds_left, process, complete_rows)

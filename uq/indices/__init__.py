@@ -12,7 +12,6 @@ Reading order; each part imports only those above it:
     groups             confidence intervals of methods with grouped rows
     shapley            Shapley effects, which are shares of the variance that sum to 1
     first_order        first-order Sobol' indices from a plain sample, with confidence intervals
-    hsic               kernel dependence measures (HSIC)
     sobol              Sobol' indices of a crossed design
     methods            registry of the sensitivity methods
 """

@@ -10,14 +10,18 @@ from functools import partial
 from uq.indices.expansions import EXPLAINED, chaos_indices, fast_indices, hdmr_indices
 from uq.indices.first_order import first_order_indices
 from uq.indices.given_data import (
+    HSIC,
     MIN_ROWS,
+    MOST_ROWS,
+    P,
     beside_nulls,
+    conditional_indices,
     one_kind,
     quantile_indices,
+    target_indices,
     without_optimism,
 )
 from uq.indices.groups import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
-from uq.indices.hsic import HSIC, MOST_ROWS, P, conditional_indices, target_indices
 from uq.indices.index import S1, S2, SHAPLEY, ST, IndexKind
 from uq.indices.measures import delta, first_order, ks_distances, pawn
 from uq.indices.method import DesignSample, SensitivityMethod

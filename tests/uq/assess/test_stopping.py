@@ -12,7 +12,7 @@ from uq.assess import stopping
 from uq.errors import InputError
 from uq.execution import amending, clusters, row_folder, runner
 from uq.execution.options import RunOptions
-from uq.execution.status import run_status
+from uq.execution.row_folder import run_status
 from uq.result.result import Result
 from uq.result.result_file import open_result
 from uq.result.workload import workload_of

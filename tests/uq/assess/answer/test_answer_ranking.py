@@ -17,7 +17,7 @@ from computed import (
 from uq.assess.answer.answer import answer
 from uq.assess.answer.contributions import AverageEffect
 from uq.assess.sensitivities import sensitivities
-from uq.indices.hsic import HSIC
+from uq.indices.given_data import HSIC
 from uq.result.nesting import first_samples
 from uq.result.result import Result
 from uq.stats.estimate import Estimate
