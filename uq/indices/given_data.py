@@ -6,8 +6,8 @@ estimated: bootstrap intervals cover far less than their nominal level. Each ind
 compared with a null: the 95 % quantile of the same estimate for an input without effect. A second
 limit is the 95 % quantile of the largest estimate over all inputs without effect. An index below
 its null is negligible. An input with many equal values has a separate null from permutations of its
-values. The Hilbert-Schmidt independence criterion (HSIC) of an event has p-values instead; OpenTURNS
-computes it, and is imported on first use.
+values. The Hilbert-Schmidt independence criterion (HSIC) of an event has p-values instead; it is
+computed by OpenTURNS, which is imported on first use.
 """
 
 from collections.abc import Callable, Mapping, Sequence
