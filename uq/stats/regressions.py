@@ -215,7 +215,8 @@ def fit_process(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> dict[str, An
     return {"scale": list(kernel.getScale()), "amplitude": kernel.getAmplitude()[0]}
 
 
-def _process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
+def process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
+    """Return the prediction of the Gaussian process of `fit_process`, conditioned on rows."""
     ot = openturns()
     fitter = _process_fitter(z, y, _kernel(fit["scale"], fit["amplitude"]))
     fitter.setOptimizeParameters(False)
@@ -234,7 +235,7 @@ def _process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, 
 
 CHAOS, PROCESS = "polynomial-chaos", "gaussian-process"
 
-_KINDS = {CHAOS: (fit_chaos, _chaos), PROCESS: (fit_process, _process)}
+_KINDS = {CHAOS: (fit_chaos, _chaos), PROCESS: (fit_process, process)}
 """Kind of regression -> its fit, and its prediction from plain numbers."""
 
 
