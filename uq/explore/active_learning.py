@@ -39,7 +39,7 @@ _BATCH = 12  # rows added at once
 _CANDIDATES = 400
 _APART = 0.3  # scaled distance between rows added at once
 _CENTRES = 12
-_POPULATION, _FINAL_POPULATION = 6000, 30_000
+_POPULATION, _FINAL_POPULATION = 4000, 30_000
 _REFIT = 1.25  # growth of the rows after which the scales of the kernel are estimated again
 _RING = 2.0  # mass of the neighbourhood outside the event, over that of the event
 _FEWEST_OF_RING = 100  # points
@@ -153,7 +153,8 @@ class Emulator:
             z, centre, sd = self.u[kept] / _UNIT, y.mean(), y.std()
             y = (y - centre) / sd
             uniform = (False,) * z.shape[1]
-            fits.append(fit_process(z, y, uniform) if renew else self._fits[number])
+            noisy = self._margin.study.random
+            fits.append(fit_process(z, y, uniform, noisy) if renew else self._fits[number])
             predict = process(fits[-1], z, y, uniform)
             self._predict.append(_in_units(predict, float(centre), float(sd)))
         self._fits = fits
@@ -288,10 +289,11 @@ def active_learning(margin: LimitState, samples: int, rng: np.random.Generator) 
     A third of the rows is kept for the estimate, as in importance sampling from a metamodel [4]_.
     It is the mass of the event of the emulator, from 30,000 weighted points, less the mass of its
     part that rows contradict, plus the masses of the parts beside it and far from it that rows find
-    within the event. Rows inside and beside it, a neighbourhood of twice its mass, are drawn in
-    proportion to mass, hence each mass is a binomial share with exact limits; rows far from it are
-    drawn wide, and their weighted count has gamma limits. The limits are combined by the method of
-    variance estimates recovery [5]_. A far part that no row hits is not in the interval.
+    within the event. Rows inside and beside it, a neighbourhood of at least twice its mass, are
+    drawn in proportion to mass, hence each mass is a binomial share with exact limits; rows far
+    from it are drawn wide, and their weighted count has gamma limits. The limits are combined by
+    the method of variance estimates recovery [5]_. A far part that no row hits is not in the
+    interval.
 
     References
     ----------
@@ -349,14 +351,20 @@ def _doubt(population: Population, score: Score) -> float:
 
 
 def _ring(population: Population, score: Score) -> tuple[float, Mask]:
-    """Return the distance, and the points, of the neighbourhood outside the event."""
-    inside = score[1] > 0
-    size = _RING * max(
-        float(population.mass[inside].sum()), float((population.mass * score[0]).sum())
-    )
+    """Return the distance, and the points, of the neighbourhood outside the event.
+
+    It has twice the mass of the event, and more if the event is expected to reach further.
+    """
+    inside, expected = score[1] > 0, population.mass * score[0]
     order = np.argsort(np.where(inside, np.inf, -score[2]), kind="stable")[: int((~inside).sum())]
-    count = int(np.searchsorted(np.cumsum(population.mass[order]), size)) + 1
-    count = min(max(count, _FEWEST_OF_RING), len(order))
+    counts = (
+        _FEWEST_OF_RING,
+        np.searchsorted(
+            np.cumsum(population.mass[order]), _RING * float(population.mass[inside].sum())
+        ),
+        np.searchsorted(np.cumsum(expected[order]), expected[order].sum() - DOUBT * expected.sum()),
+    )
+    count = min(int(max(counts)) + 1, len(order))
     limit = float(score[2][order[count - 1]]) if count else np.inf
     return limit, ~inside & (score[2] >= limit)
 

@@ -174,7 +174,7 @@ def rare_event(
     limits, every = _limits(output, threshold, below, any_of, all_of)
     if samples is None:
         samples = SAMPLES.get(method, 0)
-    _check(limits, method, samples, replicates, study.random)
+    _check(limits, method, samples, replicates)
     replicates = REPLICATES if replicates is None else replicates
     if study.imported:
         raise InputError(
@@ -398,9 +398,7 @@ SAMPLES = {"subset": 1000, "importance": 1000, "active": 300}
 REPLICATES = 8
 
 
-def _check(
-    limits: list[Limit], method: str, samples: int, replicates: int | None, random: bool
-) -> None:
+def _check(limits: list[Limit], method: str, samples: int, replicates: int | None) -> None:
     active = method == "active"
     allowed = f"no such method{nearest(method, ESTIMATORS)} ({', '.join(ESTIMATORS)})"
     demands = {
@@ -414,8 +412,6 @@ def _check(
         f"replicates must be at least 1: {replicates}": replicates is None or replicates >= 1,
         "method 'active' has no replicates: its interval is from its last rows": not active
         or replicates is None,
-        "method 'active': rows of a random model differ at the same inputs, which an emulator"
-        " cannot learn; use method 'subset'": not active or not random,
     }
     if faults := [line for line, met in demands.items() if not met]:
         raise InputError(*faults)
