@@ -10,11 +10,12 @@ References
    Kriging and Monte Carlo simulation", Struct. Saf. 33, 145-154 (2011).
 """
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from math import log
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
 from scipy.special import logsumexp, ndtr, ndtri
 from scipy.stats import qmc
@@ -30,7 +31,7 @@ from uq.stats.intervals import (
     weighted_count_interval,
 )
 from uq.stats.quantile_functions import normal
-from uq.stats.regressions import fit_process, openturns, process
+from uq.stats.regressions import Predict, fit_process, openturns, process
 
 DOUBT = 0.03
 """Learning ends if less than this share of the event's mass is expected to be misclassified."""
@@ -42,6 +43,7 @@ _CENTRES = 12
 _POPULATION, _FINAL_POPULATION = 4000, 30_000
 _REFIT = 1.25  # growth of the rows after which the scales of the kernel are estimated again
 _RING = 2.0  # mass of the neighbourhood outside the event, over that of the event
+_REACH = 10.0  # the same if rows in it contradicted the emulator when the budget was spent
 _FEWEST_OF_RING = 100  # points
 _SETTLED = 2  # populations in succession that meet `DOUBT`
 _DRAWN = 30  # points drawn wide for each that is far from the event
@@ -77,7 +79,7 @@ def sizes_of(samples: int) -> Sizes:
     """Return the division of a budget of rows, of which a third corrects the emulator."""
     reserve = samples // 3
     inside, ring = int(0.45 * reserve), int(0.35 * reserve)
-    return Sizes(samples // 8, samples // 10, inside, ring, reserve - inside - ring)
+    return Sizes(samples // 8, samples // 8, inside, ring, reserve - inside - ring)
 
 
 class Population(NamedTuple):
@@ -103,7 +105,13 @@ class Emulator:
 
     Notes
     -----
-    Each limit has a process of its own: the largest of several distances has a kink.
+    Each limit has a process of its own: the largest of several distances has a kink. The variance
+    of rows about the process is estimated too: it serves jumps and rows with random numbers [1]_.
+
+    References
+    ----------
+    .. [1] R. B. Gramacy, H. K. H. Lee, "Cases for the nugget in modeling computer experiments",
+       Stat. Comput. 22, 713-722 (2012).
     """
 
     def __init__(self, margin: LimitState) -> None:
@@ -112,8 +120,8 @@ class Emulator:
         self._each = np.empty((0, len(margin.parts)))
         self._scales: list[MarginScale] = []
         self._fitted = 0  # rows from which kernels were estimated
-        self._fits: list[dict[str, Any]] = []
-        self._predict: list[Callable[[Floats], tuple[Floats, Floats]]] = []
+        self._fits: list[Mapping[str, Any]] = []
+        self._predict: list[Predict] = []
 
     def add(self, u: Floats) -> Mask:
         """Compute rows, learn from them; return which are within the event."""
@@ -139,7 +147,7 @@ class Emulator:
                 for part, column in zip(self._margin.parts, self._each.T, strict=True)
             ]
         self._predict = []
-        fits = []
+        fits = list[Mapping[str, Any]]()
         for number, (scale, column) in enumerate(zip(self._scales, self._each.T, strict=True)):
             y = scale(column)
             finite = y[np.isfinite(y)]
@@ -150,12 +158,15 @@ class Emulator:
                 )
             kept = ~np.isnan(y)
             y = np.clip(y, finite.min(), finite.max())[kept]
+            y[y == 0] = -np.abs(y[y != 0]).min() / 2  # on the threshold is outside
             z, centre, sd = self.u[kept] / _UNIT, y.mean(), y.std()
             y = (y - centre) / sd
-            uniform = (False,) * z.shape[1]
-            noisy = self._margin.study.random
-            fits.append(fit_process(z, y, uniform, noisy) if renew else self._fits[number])
-            predict = process(fits[-1], z, y, uniform)
+            flat = (False,) * z.shape[1]
+            fit = self._fits[number] if self._fits else None
+            if fit is None or renew:
+                fit = fit_process(z, y, flat, noisy=True, start=fit)
+            fits.append(fit)
+            predict = process(fit, z, y, flat)
             self._predict.append(_in_units(predict, float(centre), float(sd)))
         self._fits = fits
         self._fitted = len(self.u) if renew else self._fitted
@@ -169,9 +180,7 @@ class Emulator:
         return 1 - (1 - each).prod(axis=0), means.max(axis=0), most.max(axis=0)
 
 
-def _in_units(
-    predict: Callable[[Floats], tuple[Floats, Floats]], centre: float, sd: float
-) -> Callable[[Floats], tuple[Floats, Floats]]:
+def _in_units(predict: Predict, centre: float, sd: float) -> Predict:
     def predicted(z: Floats) -> tuple[Floats, Floats]:
         mean, error = predict(z)
         return centre + sd * mean, sd * error
@@ -283,13 +292,15 @@ def active_learning(margin: LimitState, samples: int, rng: np.random.Generator) 
     A Latin hypercube, two thirds of it widened, is the first design. Batches are added where ``U =
     |mean| / sd`` is least [1]_ among points drawn from the input law times the probability of
     misclassification; a system takes a process for each limit [2]_. Learning stops when the mass
-    expected to be misclassified is below `DOUBT` of that of the event [3]_, then rows on
-    the axes and rows drawn wide look for contradictions, from which it goes on.
+    expected to be misclassified is below `DOUBT` of that of the event [3]_, then rows
+    within the event, beside it, on the axes and drawn wide look for contradictions, from which it
+    goes on.
 
     A third of the rows is kept for the estimate, as in importance sampling from a metamodel [4]_.
     It is the mass of the event of the emulator, from 30,000 weighted points, less the mass of its
     part that rows contradict, plus the masses of the parts beside it and far from it that rows find
-    within the event. Rows inside and beside it, a neighbourhood of at least twice its mass, are
+    within the event. Rows inside and beside it, a neighbourhood of at least twice its mass, ten
+    times after contradictions there, are
     drawn in proportion to mass, hence each mass is a binomial share with exact limits; rows far
     from it are drawn wide, and their weighted count has gamma limits. The limits are combined by
     the method of variance estimates recovery [5]_. A far part that no row hits is not in the
@@ -317,7 +328,7 @@ def active_learning(margin: LimitState, samples: int, rng: np.random.Generator) 
     u[plain:] *= widest(d)
     emulator.add(u)
     budget, centres = samples - sizes.reserve, u[:0]
-    contradicted = True
+    contradicted, reach = True, _REACH
     while contradicted:
         settled = 0
         while True:
@@ -326,22 +337,29 @@ def active_learning(margin: LimitState, samples: int, rng: np.random.Generator) 
             centres = _centres(population, score[0], rng)
             doubt = _doubt(population, score)
             settled = settled + 1 if doubt <= DOUBT else 0
-            left = budget - margin.rows
+            left = budget - sizes.search - margin.rows
             certain = not (population.mass * misclassified(score)).any()
             if settled == _SETTLED or certain or left <= 0:
                 break
             if not settled:
                 emulator.add(_added(emulator, population, score, rng)[:left])
-        if left < sizes.search:
+        if left < 0:
             break
-        star = _star(population, score, rng)[: 2 * sizes.search // 3]
-        limit, _ = _ring(population, score)
-        u = np.concatenate([star, _far(emulator, limit, sizes.search - len(star), d, rng)[0]])
-        expected = emulator(u)[1] > 0
-        contradicted = bool((emulator.add(u) != expected).any())
-        plain += round(PLAIN * (len(u) - len(star)))
+        limit, ring = _ring(population, score, _RING)
+        fifth = sizes.search // 5
+        star = _star(population, score, rng)[: 2 * fifth]
+        near = _drawn(population, ring, fifth, rng)
+        within = _drawn(population, score[1] > 0, fifth, rng)
+        rest = sizes.search - len(star) - len(near) - len(within)
+        far, _ = _far(emulator, limit, rest, d, rng)
+        u = np.concatenate([population.u[near], population.u[within], star, far])
+        wrong = emulator(u)[1] > 0
+        wrong ^= emulator.add(u)
+        contradicted = bool(wrong.any())
+        reach = _REACH if wrong[: len(near)].any() else _RING
+        plain += round(PLAIN * len(far))
     final = population_of(centres, d, _FINAL_POPULATION, rng)
-    return _corrected(emulator, final, sizes, doubt, plain, rng)
+    return _corrected(emulator, final, sizes, reach, doubt, plain, rng)
 
 
 def _doubt(population: Population, score: Score) -> float:
@@ -350,17 +368,26 @@ def _doubt(population: Population, score: Score) -> float:
     return float((population.mass * misclassified(score)).sum()) / mass if mass else np.inf
 
 
-def _ring(population: Population, score: Score) -> tuple[float, Mask]:
+def _drawn(
+    population: Population, part: Mask, count: int, rng: np.random.Generator
+) -> NDArray[np.int64]:
+    """Draw points of a part of the population in proportion to mass; none if it is empty."""
+    chances = population.mass * part
+    total = chances.sum()
+    return rng.choice(len(part), count, p=chances / total) if total > 0 else np.empty(0, np.int64)
+
+
+def _ring(population: Population, score: Score, reach: float) -> tuple[float, Mask]:
     """Return the distance, and the points, of the neighbourhood outside the event.
 
-    It has twice the mass of the event, and more if the event is expected to reach further.
+    It has `reach` times the mass of the event, and more if the event is expected to reach further.
     """
     inside, expected = score[1] > 0, population.mass * score[0]
     order = np.argsort(np.where(inside, np.inf, -score[2]), kind="stable")[: int((~inside).sum())]
     counts = (
         _FEWEST_OF_RING,
         np.searchsorted(
-            np.cumsum(population.mass[order]), _RING * float(population.mass[inside].sum())
+            np.cumsum(population.mass[order]), reach * float(population.mass[inside].sum())
         ),
         np.searchsorted(np.cumsum(expected[order]), expected[order].sum() - DOUBT * expected.sum()),
     )
@@ -395,6 +422,7 @@ def _corrected(
     emulator: Emulator,
     population: Population,
     sizes: Sizes,
+    reach: float,
     doubt: float,
     plain: int,
     rng: np.random.Generator,
@@ -403,13 +431,10 @@ def _corrected(
     u, mass = population
     score = emulator(u)
     inside = score[1] > 0
-    limit, ring = _ring(population, score)
+    limit, ring = _ring(population, score, reach)
     picked = [
-        rng.choice(len(u), count, p=mass * part / (mass * part).sum()) if part.any() else none
-        for part, count, none in (
-            (inside, sizes.inside, np.empty(0, int)),
-            (ring, sizes.ring, np.empty(0, int)),
-        )
+        _drawn(population, inside, sizes.inside, rng),
+        _drawn(population, ring, sizes.ring, rng),
     ]
     far, weight = _far(emulator, limit, sizes.far, u.shape[1], rng)
     first, second = len(picked[0]), len(picked[0]) + len(picked[1])

@@ -201,17 +201,22 @@ def _process_fitter(z: Floats, y: Floats, kernel: Any) -> Any:
 
 
 def fit_process(
-    z: Floats, y: Floats, uniform: tuple[bool, ...], noisy: bool = False
+    z: Floats,
+    y: Floats,
+    uniform: tuple[bool, ...],
+    noisy: bool = False,
+    start: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Return the most likely Gaussian process: a Matern 5/2 kernel, its scales and sd.
 
     They are estimated from the first 150 rows: the cost grows with the cube of their number. The
     variance of `noisy` rows about the process, relative to its own, is estimated, too (a nugget).
+    The search begins at an earlier estimate, `start`, if there is one.
     """
     ot = openturns()
     d = z.shape[1]
-    first = _kernel([1.0] * d, 1.0, _NUGGET if noisy else None)
-    fitter = _process_fitter(z[:_FOR_SCALES], y[:_FOR_SCALES], first)
+    start = start or {"scale": [1.0] * d, "amplitude": 1.0} | ({"nugget": _NUGGET} if noisy else {})
+    fitter = _process_fitter(z[:_FOR_SCALES], y[:_FOR_SCALES], _kernel(**start))
     search = ot.Cobyla()
     search.setMaximumCallsNumber(300)
     search.setMaximumAbsoluteError(1e-3)
