@@ -96,7 +96,7 @@ class Population(NamedTuple):
     mass: Floats
 
 
-class Emulator:
+class EventEmulator:
     """Gaussian processes of the distances beyond each limit, and the event that they predict.
 
     Parameters
@@ -215,7 +215,7 @@ def _centres(population: Population, probability: Floats, rng: np.random.Generat
 
 
 def _added(
-    emulator: Emulator, population: Population, score: Score, rng: np.random.Generator
+    emulator: EventEmulator, population: Population, score: Score, rng: np.random.Generator
 ) -> Floats:
     """Return points to compute next: the least certain of those likely to be misclassified."""
     doubt = misclassified(score)
@@ -236,7 +236,7 @@ def misclassified(score: Score) -> Floats:
     return np.where(score[1] > 0, 1 - score[0], score[0])
 
 
-class Learnt(NamedTuple):
+class ActiveEstimate(NamedTuple):
     """Outcome of active learning.
 
     Attributes
@@ -268,7 +268,7 @@ class Learnt(NamedTuple):
     plain: int
 
 
-def active_learning(margin: LimitState, samples: int, rng: np.random.Generator) -> Learnt:
+def active_learning(margin: LimitState, samples: int, rng: np.random.Generator) -> ActiveEstimate:
     """Estimate the probability of an event from few rows, which Gaussian processes choose.
 
     Parameters
@@ -280,7 +280,7 @@ def active_learning(margin: LimitState, samples: int, rng: np.random.Generator) 
 
     Returns
     -------
-    Learnt
+    ActiveEstimate
 
     Raises
     ------
@@ -322,7 +322,7 @@ def active_learning(margin: LimitState, samples: int, rng: np.random.Generator) 
     """
     openturns()
     d, sizes = margin.dimension, sizes_of(samples)
-    emulator = Emulator(margin)
+    emulator = EventEmulator(margin)
     plain = sizes.design // 3
     u = ndtri(qmc.LatinHypercube(d, rng=rng).random(sizes.design))
     u[plain:] *= widest(d)
@@ -408,7 +408,7 @@ def _star(population: Population, score: Score, rng: np.random.Generator) -> Flo
 
 
 def _far(
-    emulator: Emulator, limit: float, count: int, d: int, rng: np.random.Generator
+    emulator: EventEmulator, limit: float, count: int, d: int, rng: np.random.Generator
 ) -> tuple[Floats, Floats]:
     """Draw points wide, outside the event and its neighbourhood, and their weights over `count`."""
     u, weight = drawn_wide(d, _DRAWN * count, [rng])
@@ -419,14 +419,14 @@ def _far(
 
 
 def _corrected(
-    emulator: Emulator,
+    emulator: EventEmulator,
     population: Population,
     sizes: Sizes,
     reach: float,
     doubt: float,
     plain: int,
     rng: np.random.Generator,
-) -> Learnt:
+) -> ActiveEstimate:
     """Return the estimate of the emulator, corrected by further rows."""
     u, mass = population
     score = emulator(u)
@@ -464,7 +464,7 @@ def _corrected(
     wrong = int((~hits[:first]).sum() + hits[first:].sum())
     value, ends = estimated(hits)
     failed_high = estimated(hits | lost)[1][1]
-    return Learnt(value, ends, failed_high, masses[0], doubt, len(hits), wrong, plain)
+    return ActiveEstimate(value, ends, failed_high, masses[0], doubt, len(hits), wrong, plain)
 
 
 def _mass(mass: float, contradicted: Mask, sign: float) -> tuple[float, Ends]:

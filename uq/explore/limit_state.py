@@ -1,4 +1,4 @@
-"""Limit-state function: distance of rows beyond a threshold, in standard normal space."""
+"""EventLimit-state function: distance of rows beyond a threshold, in standard normal space."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -58,7 +58,7 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
         yield evaluator
 
 
-class Limit(NamedTuple):
+class EventLimit(NamedTuple):
     """A limit: an output, or an element of it, above or below a threshold in the output's unit."""
 
     output: str
@@ -71,14 +71,14 @@ class MarginScale(NamedTuple):
 
     Attributes
     ----------
-    limit : Limit
+    limit : EventLimit
     logarithmic : bool
         Whether distances are those of logarithms, which is better for a skewed positive output.
     sd : float
         Standard deviation, by which distances are divided.
     """
 
-    limit: Limit
+    limit: EventLimit
     logarithmic: bool
     sd: float
 
@@ -91,7 +91,7 @@ class MarginScale(NamedTuple):
         return margin / self.sd
 
 
-def scale_of(limit: Limit, margin: Floats) -> MarginScale:
+def scale_of(limit: EventLimit, margin: Floats) -> MarginScale:
     """Return the scale of the distances beyond a limit, from those of the first rows."""
     margin = margin[np.isfinite(margin)]
     ratio = 1.0 + (-margin if limit.below else margin) / (limit.threshold or np.nan)
@@ -107,7 +107,7 @@ def scale_of(limit: Limit, margin: Floats) -> MarginScale:
 
 
 class LimitState:
-    """Limit-state function: distance of rows beyond a threshold.
+    """EventLimit-state function: distance of rows beyond a threshold.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ class LimitState:
     Attributes
     ----------
     output : Output
-    limit : Limit
+    limit : EventLimit
     parts : list of LimitState
         One for each limit.
     every : bool
@@ -157,7 +157,7 @@ class LimitState:
         self._column = name.partition("[")[0]
         self._evaluator = evaluator
         self._first = first
-        self.limit = Limit(name, threshold, below)
+        self.limit = EventLimit(name, threshold, below)
         self.parts: list[LimitState] = [self]
         self.every = False
         self.rows = self.failed = self.undefined = 0
@@ -234,12 +234,12 @@ class LimitState:
 
 
 class SystemState(LimitState):
-    """Limit-state function of a system event: any or all of several limits.
+    """EventLimit-state function of a system event: any or all of several limits.
 
     Parameters
     ----------
     study : Study
-    limits : sequence of Limit
+    limits : sequence of EventLimit
     every : bool
         Whether all limits must be exceeded (a parallel system) instead of any (a series system).
     evaluator : Evaluator
@@ -255,7 +255,7 @@ class SystemState(LimitState):
     def __init__(
         self,
         study: Study,
-        limits: Sequence[Limit],
+        limits: Sequence[EventLimit],
         every: bool,
         evaluator: Evaluator,
         first: int = 0,

@@ -21,7 +21,7 @@ from uq.explore.importance_sampling import (
     is_above,
     wide_search,
 )
-from uq.explore.limit_state import Limit, LimitState, SystemState, evaluator_of
+from uq.explore.limit_state import EventLimit, LimitState, SystemState, evaluator_of
 from uq.explore.subset_simulation import (
     LEVEL_SHARE,
     SMALLEST,
@@ -244,19 +244,19 @@ def _limits(
     below: bool,
     any_of: Sequence[tuple[str, float, str]],
     all_of: Sequence[tuple[str, float, str]],
-) -> tuple[list[Limit], bool]:
+) -> tuple[list[EventLimit], bool]:
     """Return the limits of an event, and whether all of them must be exceeded."""
     single = output is not None or threshold is not None
     if single + bool(any_of) + bool(all_of) != 1 or (single and None in (output, threshold)):
         raise InputError("rare event: give an output and a threshold, or any_of, or all_of")
     if output is not None and threshold is not None:
-        return [Limit(output, threshold, below)], False
+        return [EventLimit(output, threshold, below)], False
     given = any_of or all_of
     if len(given) < 2:
         raise InputError("rare event: any_of and all_of need at least two limits")
     if faults := [side for *_, side in given if side not in ("above", "below")]:
         raise InputError(f"rare event: a limit is 'above' or 'below', not {faults[0]!r}")
-    return [Limit(name, limit, side == "below") for name, limit, side in given], bool(all_of)
+    return [EventLimit(name, limit, side == "below") for name, limit, side in given], bool(all_of)
 
 
 def _event(margin: LimitState) -> dict[str, Any]:
@@ -398,7 +398,7 @@ SAMPLES = {"subset": 1000, "importance": 1000, "active": 300}
 REPLICATES = 8
 
 
-def _check(limits: list[Limit], method: str, samples: int, replicates: int | None) -> None:
+def _check(limits: list[EventLimit], method: str, samples: int, replicates: int | None) -> None:
     active = method == "active"
     allowed = f"no such method{nearest(method, ESTIMATORS)} ({', '.join(ESTIMATORS)})"
     demands = {

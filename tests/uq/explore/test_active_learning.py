@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 import pytest
-from computed import UNIFORM, with_seed
+from computed import with_seed
 from limit_states import PARTS, PLANE
 from rare_studies import WEAR, branches, close, interval, linear, study
 from scipy import integrate, stats
@@ -55,12 +55,14 @@ def test_known_probabilities_are_within_intervals_from_three_hundred_rows(
 ):
     ds = rare_event(of, output, threshold, below, method="active", workers=0)
     assert covers(ds, truth)
-    assert interval(ds)[1] < 1.6 * interval(ds)[0]
+    assert interval(ds)[1] < 2 * interval(ds)[0]
     assert int(ds["rows"]) <= 300
     assert float(ds["misclassified"]) <= 0.03
 
 
-@pytest.mark.parametrize("method", ["subset", "importance", "active"])
+@pytest.mark.parametrize(
+    "method", ["subset", "importance", pytest.param("active", marks=pytest.mark.slow)]
+)
 def test_any_and_all_of_several_limits_have_closed_forms(method):
     both = [("sum", 4.753424, "above"), ("sum", -4.264891, "below")]
     ds = rare_event(branches(), any_of=both, method=method, workers=0)
@@ -80,7 +82,7 @@ def test_limits_of_outputs_of_different_scale_are_one_event():
     early, late = LIFE.ppf(1e-4), LIFE.isf(1e-5)
     limits = [("life", early, "below"), ("life", late, "above")]
     for method in ("subset", "active"):
-        ds = rare_event(of, any_of=limits, method=method, workers=0)
+        ds = rare_event(of, any_of=limits, method=method, samples=200, workers=0)
         assert close(ds, 1.1e-4)
 
 
@@ -88,7 +90,7 @@ def test_limits_of_outputs_of_different_scale_are_one_event():
     ("of", "output", "threshold", "truth"),
     [
         (branches(), "step", 4.5, stats.norm.sf(4.75)),
-        (cliff(PLANE, 1), "stress", 5.0, CLIFF),
+        pytest.param(cliff(PLANE, 1), "stress", 5.0, CLIFF, marks=pytest.mark.slow),
     ],
     ids=("stair", "cliff"),
 )
@@ -100,16 +102,17 @@ def test_a_jump_that_the_emulator_predicts_badly_is_corrected_by_rows(of, output
 
 
 def test_rows_with_their_own_random_numbers_are_within_the_interval():
-    of = study("sample_models:NOISY", {"x1": UNIFORM, "x2": UNIFORM})
-    ds = rare_event(of, "y", 1.49, method="active", workers=0)
-    assert covers(ds, 0.01**2 / 2)  # x1 and noise are uniform
+    of = study("limit_states:ROUGH", PLANE)
+    truth, _ = integrate.quad(lambda noise: stats.norm.sf(4.5 - noise), -0.5, 0.5, epsabs=0)
+    ds = rare_event(of, "rough", 4.5, method="active", workers=0)
+    assert covers(ds, truth)
     assert int(ds["contradicted"]) > 0
 
 
 def test_an_event_out_of_reach_is_bounded_by_plain_rows():
-    ds = rare_event(linear(), "y", 10.5, method="active", workers=0)
+    ds = rare_event(linear(), "y", 10.5, method="active", samples=150, workers=0)
     assert interval(ds) == (0.0, float(ds["hidden_high"]))
-    assert 0.05 < float(ds["hidden_high"]) < 0.3
+    assert 0.1 < float(ds["hidden_high"]) < 0.5
     assert "no row is beyond the threshold" in ds.attrs["notes"]
 
 
@@ -173,21 +176,21 @@ def test_a_weighted_count_has_the_limits_of_poisson():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("of", "output", "threshold", "truth", "least"),
+    ("of", "output", "threshold", "truth"),
     [
-        (branches(), "demand", 2.048386, four_branches(2.048386), 0.9),
-        (branches(), "step", 4.5, stats.norm.sf(4.75), 0.9),
-        (cliff(PLANE, 1), "stress", 5.0, CLIFF, 0.9),
-        (study("oscillator", PARTS), "excess", 0.0, 9.09e-6, 0.9),
-        (linear(), "y", 10.0 - 576e-6**0.25, 1e-6, 0.9),
+        (branches(), "demand", 2.048386, four_branches(2.048386)),
+        (branches(), "step", 4.5, stats.norm.sf(4.75)),
+        (cliff(PLANE, 1), "stress", 5.0, CLIFF),
+        (study("oscillator", PARTS), "excess", 0.0, 9.09e-6),
+        (linear(), "y", 10.0 - 576e-6**0.25, 1e-6),
     ],
     ids=("branches", "stair", "cliff", "oscillator", "corner"),
 )
-def test_intervals_of_active_learning_cover_over_seeds(of, output, threshold, truth, least):
-    found = [
+def test_intervals_of_active_learning_cover_over_seeds(of, output, threshold, truth):
+    covered = [
         covers(
             rare_event(with_seed(of, seed), output, threshold, method="active", workers=0), truth
         )
         for seed in range(40)
     ]
-    assert np.mean(found) >= least
+    assert np.mean(covered) >= 0.9
