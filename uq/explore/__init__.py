@@ -9,6 +9,7 @@ Reading order; each part imports only those above it:
     next_rows            next rows, where a result of few rows gains most
     single_rows          single rows: a single run of a model, or a recomputed row of a result
     importance_sampling  importance sampling of rare events
+    active_learning      active learning of rare events
     updating             a study or a result, updated with inspections
     rare_events          rare events
 """

@@ -242,18 +242,62 @@ def wide_search(
     .. [2] A. Owen, Y. Zhou, "Safe and effective importance sampling", J. Am. Stat. Assoc. 95,
        135-143 (2000).
     """
+    u, weight = drawn_wide(d, samples, generators)
     plain = round(PLAIN * samples)
-    of_one = (samples - plain) // 2
-    of_all = min(_MOST_OF_ALL, 1 + 2 / d**0.5)
+    inside = margin(u) > 0
+    estimates = (weight * inside).reshape(-1, samples).mean(axis=1)
+    return WideSearch(estimates, weight[inside] / len(u), plain * len(generators))
+
+
+def drawn_wide(
+    d: int, samples: int, generators: list[np.random.Generator]
+) -> tuple[Floats, Floats]:
+    """Draw from widened laws, see `wide_search`; return points and importance weights.
+
+    Parameters
+    ----------
+    d : int
+        Dimension of standard normal space.
+    samples : int
+        Rows of each replicate.
+    generators : list of numpy.random.Generator
+        One per replicate.
+
+    Returns
+    -------
+    u : ndarray, shape (n, d)
+        The rows of all replicates, one replicate after the other.
+    weight : ndarray, shape (n,)
+    """
+    plain, of_one, _ = _shared_out(samples)
     drawn = []
     for rng in generators:
         u = rng.standard_normal((samples, d))
         rows = np.arange(plain, plain + of_one)
         u[rows, rng.integers(d, size=of_one)] *= _OF_ONE_INPUT
-        u[plain + of_one :] *= of_all
+        u[plain + of_one :] *= widest(d)
         drawn.append(u)
     u = np.concatenate(drawn)
-    shares = np.array([plain, of_one, samples - plain - of_one]) / samples
+    return u, np.exp(-log_widened(u, samples))
+
+
+def log_widened(u: Floats, samples: int) -> Floats:
+    """Return the logarithm of the density of widened laws over that of the input law.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n, d)
+        Points of standard normal space.
+    samples : int
+        Rows that are shared out among the widened laws.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    d = u.shape[1]
+    of_all = widest(d)
+    shares = np.array(_shared_out(samples)) / samples
     squares = u**2 / 2
     of_input = squares * (1 - _OF_ONE_INPUT**-2) - np.log(_OF_ONE_INPUT)
     logs = [
@@ -261,7 +305,16 @@ def wide_search(
         logsumexp(of_input, axis=1) - np.log(d),
         squares.sum(axis=1) * (1 - of_all**-2) - d * np.log(of_all),
     ]
-    weight = np.exp(-logsumexp(np.stack(logs), axis=0, b=shares[:, None]))
-    inside = margin(u) > 0
-    estimates = (weight * inside).reshape(-1, samples).mean(axis=1)
-    return WideSearch(estimates, weight[inside] / len(u), plain * len(generators))
+    return np.asarray(logsumexp(np.stack(logs), axis=0, b=shares[:, None]))
+
+
+def _shared_out(samples: int) -> tuple[int, int, int]:
+    """Return how many rows are plain, widened in a single input, and widened in all inputs."""
+    plain = round(PLAIN * samples)
+    of_one = (samples - plain) // 2
+    return plain, of_one, samples - plain - of_one
+
+
+def widest(d: int) -> float:
+    """Return the factor by which the standard deviations of all d inputs are widened at once."""
+    return min(_MOST_OF_ALL, 1 + 2 / d**0.5)

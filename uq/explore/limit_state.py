@@ -1,14 +1,15 @@
-"""Limit-state function: distance of rows beyond a threshold, in standard normal space."""
+"""EventLimit-state function: distance of rows beyond a threshold, in standard normal space."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
+from scipy.stats import skew
 
-from uq.contract import Floats, Output, Status, censored_name
+from uq.contract import Floats, Mask, Output, Status, censored_name
 from uq.errors import InputError, nearest
 from uq.execution.executor import Dispatcher, Executor
 from uq.execution.options import RunOptions
@@ -25,6 +26,9 @@ Evaluator = Callable[[Floats, NDArray[np.uint64]], Chunk]
 bits in any process."""
 
 
+_RATIO = 3.0  # of largest to smallest value from which logarithms may be used
+
+
 @contextmanager
 def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Evaluator]:
     """Yield a function that runs the model of a study.
@@ -33,7 +37,7 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
     ----------
     study : Study
     output : str
-        The requested output: computed alone if the model supports it.
+        The requested output: computed alone if the model supports it; empty for all outputs.
     options : RunOptions
     """
     cheap = output in study.model.cheap
@@ -54,8 +58,56 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
         yield evaluator
 
 
+class EventLimit(NamedTuple):
+    """A limit: an output, or an element of it, above or below a threshold in the output's unit."""
+
+    output: str
+    threshold: float
+    below: bool = False
+
+
+class MarginScale(NamedTuple):
+    """Scale of the distances beyond a limit, which keeps their sign.
+
+    Attributes
+    ----------
+    limit : EventLimit
+    logarithmic : bool
+        Whether distances are those of logarithms, which is better for a skewed positive output.
+    sd : float
+        Standard deviation, by which distances are divided.
+    """
+
+    limit: EventLimit
+    logarithmic: bool
+    sd: float
+
+    def __call__(self, margin: Floats) -> Floats:
+        """Return scaled distances; the others may be infinite or NaN."""
+        if self.logarithmic:
+            sign = -1.0 if self.limit.below else 1.0
+            with np.errstate(divide="ignore"):
+                margin = sign * np.log1p(np.maximum(sign * margin / self.limit.threshold, -1.0))
+        return margin / self.sd
+
+
+def scale_of(limit: EventLimit, margin: Floats) -> MarginScale:
+    """Return the scale of the distances beyond a limit, from those of the first rows."""
+    margin = margin[np.isfinite(margin)]
+    ratio = 1.0 + (-margin if limit.below else margin) / (limit.threshold or np.nan)
+    logarithmic = bool(
+        limit.threshold > 0
+        and len(margin) > 1
+        and ratio.min() > 0
+        and ratio.max() > _RATIO * ratio.min()
+        and abs(float(skew(np.log(ratio)))) < abs(float(skew(ratio)))
+    )
+    sd = float(MarginScale(limit, logarithmic, 1.0)(margin).std()) if len(margin) else 0.0
+    return MarginScale(limit, logarithmic, sd or 1.0)
+
+
 class LimitState:
-    """Limit-state function: distance of rows beyond a threshold.
+    """EventLimit-state function: distance of rows beyond a threshold.
 
     Parameters
     ----------
@@ -73,6 +125,11 @@ class LimitState:
     Attributes
     ----------
     output : Output
+    limit : EventLimit
+    parts : list of LimitState
+        One for each limit.
+    every : bool
+        Whether an event requires all limits to be exceeded.
     dimension : int
         Of standard normal space.
     rows : int
@@ -100,6 +157,9 @@ class LimitState:
         self._column = name.partition("[")[0]
         self._evaluator = evaluator
         self._first = first
+        self.limit = EventLimit(name, threshold, below)
+        self.parts: list[LimitState] = [self]
+        self.every = False
         self.rows = self.failed = self.undefined = 0
         self.failures: dict[str, str] = {}
 
@@ -126,15 +186,36 @@ class LimitState:
             Distance beyond the threshold, positive within the event; -inf for a row without a
             value, which counts as outside.
         """
+        return self._margin(self._chunk(u))
+
+    def each(self, u: Floats) -> Floats:
+        """Return the distances beyond each limit, shape (n, limits); NaN without a value."""
+        chunk = self._chunk(u)
+        self._margin(chunk)
+        judged = [part.judged(chunk) for part in self.parts]
+        return np.stack(
+            [np.where(failed | undefined, np.nan, margin) for margin, failed, undefined in judged],
+            axis=1,
+        )
+
+    def _chunk(self, u: Floats) -> Chunk:
         # Every row has its own random numbers, as in a study.
         number = np.arange(len(u)) + self.rows + self._first
         chunk = self._evaluator(self.physical(u), row_seeds(self.study.design.seed, number))
         for label, (row, text) in chunk.failures.items():
             self.failures.setdefault(label, f"row {self.rows + row}: {text}")
         self.rows += len(u)
-        return self._margin(chunk)
+        return chunk
 
     def _margin(self, chunk: Chunk) -> Floats:
+        margin, failed, undefined = self.judged(chunk)
+        self.undefined += int(undefined.sum())
+        self.failed += int(failed.sum())
+        return margin
+
+    def judged(self, chunk: Chunk) -> tuple[Floats, Mask, Mask]:
+        """Return distances beyond the limit, and which rows failed or are undefined, (n,) each."""
+
         def column(name: str) -> NDArray[Any]:
             return chunk.columns[name].reshape(len(chunk.status), -1)[:, self._place]
 
@@ -149,9 +230,61 @@ class LimitState:
             if not self.below:
                 margin[censored] = np.inf
         margin[absent] = -np.inf
-        self.undefined += int(undefined.sum())
-        self.failed += int((absent & ~undefined).sum())
-        return margin
+        return margin, absent & ~undefined, undefined
+
+
+class SystemState(LimitState):
+    """EventLimit-state function of a system event: any or all of several limits.
+
+    Parameters
+    ----------
+    study : Study
+    limits : sequence of EventLimit
+    every : bool
+        Whether all limits must be exceeded (a parallel system) instead of any (a series system).
+    evaluator : Evaluator
+    first : int, optional
+
+    Notes
+    -----
+    The distance is the smallest or largest of those beyond each limit, each scaled by the rows of
+    the first call (`scale_of`). A row counts as failed only if the limits that have a value do not
+    decide it.
+    """
+
+    def __init__(
+        self,
+        study: Study,
+        limits: Sequence[EventLimit],
+        every: bool,
+        evaluator: Evaluator,
+        first: int = 0,
+    ) -> None:
+        super().__init__(study, *limits[0], evaluator, first)
+        self.parts = [LimitState(study, *limit, evaluator) for limit in limits]
+        self.every = every
+        self._scales: list[MarginScale] = []
+
+    def judged(self, chunk: Chunk) -> tuple[Floats, Mask, Mask]:
+        """Return distances beyond the limits, and which rows failed or are undefined, (n,) each."""
+        parts = [part.judged(chunk) for part in self.parts]
+        if not self._scales:
+            self._scales = [
+                scale_of(part.limit, margin)
+                for part, (margin, *_) in zip(self.parts, parts, strict=True)
+            ]
+        margins = np.stack(
+            [scale(margin) for scale, (margin, *_) in zip(self._scales, parts, strict=True)]
+        )
+        failed = np.stack([part[1] for part in parts])
+        undefined = np.stack([part[2] for part in parts])
+        if self.every:
+            decided = ((margins <= 0) & ~failed & ~undefined).any(axis=0)
+            lost = np.asarray(failed.any(axis=0) & ~decided)
+            absent = np.asarray(undefined.any(axis=0) & ~decided & ~lost)
+            return margins.min(axis=0), lost, absent
+        lost = np.asarray(failed.any(axis=0) & ~(margins > 0).any(axis=0))
+        return margins.max(axis=0), lost, np.asarray(undefined.all(axis=0))
 
 
 def find_element(study: Study, name: str) -> tuple[Output, int]:

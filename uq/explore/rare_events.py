@@ -1,6 +1,7 @@
 """Rare events: the probability that an output exceeds a threshold, down to 1e-6 and less."""
 
-from math import isfinite
+from collections.abc import Sequence
+from math import isfinite, log
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,6 +13,7 @@ from uq.contract import Floats
 from uq.errors import InputError, nearest
 from uq.execution.loading import load_study
 from uq.execution.options import RunOptions
+from uq.explore.active_learning import DOUBT, active_learning
 from uq.explore.importance_sampling import (
     WideSearch,
     design_points,
@@ -19,7 +21,7 @@ from uq.explore.importance_sampling import (
     is_above,
     wide_search,
 )
-from uq.explore.limit_state import LimitState, evaluator_of
+from uq.explore.limit_state import EventLimit, LimitState, SystemState, evaluator_of
 from uq.explore.subset_simulation import (
     LEVEL_SHARE,
     SMALLEST,
@@ -27,7 +29,7 @@ from uq.explore.subset_simulation import (
     subset_interval,
     subset_simulation,
 )
-from uq.stats.intervals import Ends, binomial_interval, log_scatter_interval
+from uq.stats.intervals import CONFIDENCE, Ends, binomial_interval, log_scatter_interval
 from uq.study.definition import Study
 from uq.text.numbers import counted
 
@@ -64,41 +66,58 @@ class _Outcome(NamedTuple):
     disagreement: float
     variables: dict[str, Any]
 
+    @property
+    def is_partial(self) -> bool:
+        """Whether the interval is of the part of the event that the method reaches."""
+        return self.plain > 0 or "hidden_high" in self.variables
+
 
 def rare_event(
     study: Study | str | Path,
-    output: str,
-    threshold: float,
+    output: str | None = None,
+    threshold: float | None = None,
     below: bool = False,
     method: str = "subset",
-    samples: int = 1000,
-    replicates: int = 8,
+    samples: int | None = None,
+    replicates: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
+    any_of: Sequence[tuple[str, float, str]] = (),
+    all_of: Sequence[tuple[str, float, str]] = (),
 ) -> xr.Dataset:
     """Estimate the probability that an output exceeds a threshold, however small it is.
+
+    The event may also be that any, or all, of several limits are exceeded.
 
     Parameters
     ----------
     study : Study, str or Path
         Gives model, laws, settings and seed; its design is not used.
-    output : str
+    output : str, optional
         Such as ``disphasing_angle`` (angles by their magnitude) or ``work_rate[site=left]``.
-    threshold : float
+    threshold : float, optional
         In the output's unit.
     below : bool
         Whether the event is below the threshold instead of above.
-    method : {"subset", "importance"}
+    method : {"subset", "importance", "active"}
         Subset simulation follows the output towards the event from every side. It assumes that the
         output rises towards every part of the event, without a jump. Importance sampling around the
         design points of FORM requires far fewer rows if the output is smooth, but misses any part
-        of the event away from the design points found.
-    samples : int
-        Rows of each level (subset), or around the design points (importance), of each replicate.
-    replicates : int
-        Independent repetitions of the method, whose scatter gives the interval.
+        of the event away from the design points found. Active learning is for rows that take
+        minutes: emulators choose a few hundred rows, a third of which corrects their estimate
+        (`uq.explore.active_learning.active_learning`).
+    samples : int, optional
+        Rows of each level (subset, 1000), or around the design points (importance, 1000), of each
+        replicate; largest number of all rows (active, 300).
+    replicates : int, optional
+        Independent repetitions of the method, whose scatter gives the interval, 8 by default; not
+        of active learning, whose interval is from its last rows.
     workers, scheduler
         As in `uq.run`.
+    any_of, all_of : sequence of (str, float, {"above", "below"}), optional
+        Instead of output and threshold: several limits, any of which (series system) or all of
+        which (parallel system) make the event, such as ``[("life", 1e5, "below"), ("sum", 3.0,
+        "above")]``.
 
     Returns
     -------
@@ -112,10 +131,14 @@ def rare_event(
         how many of these lie within the event, how many there are and how many failed; subset:
         ``levels`` of each replicate, why it ``ended`` (``event``, ``plateau`` or ``smallest``) and
         ``typical``, the median of each uncertain parameter given the event; importance:
-        ``reliability_index``, ``first_order`` probability and ``location`` of each design point.
+        ``reliability_index``, ``first_order`` probability and ``location`` of each design point;
+        active: no rows drawn wide apart, but ``emulated``, the probability by the emulators alone,
+        the share of it that they expect to be ``misclassified``, and how many of the ``checks``,
+        the rows of the last estimate, ``contradicted`` them.
         Attributes: ``estimated_by`` (the method, or ``wide`` where rows drawn wide show that it
         missed a part), ``interval_of`` (``event``, or the part that the method reaches), and
-        ``notes``: caveats.
+        ``notes``: caveats. Of a system, ``output``, ``threshold``, ``side`` and ``units`` are lists
+        and ``combination`` is ``any`` or ``all``.
 
     Raises
     ------
@@ -148,20 +171,31 @@ def rare_event(
     """
     if not isinstance(study, Study):
         study = load_study(study)
-    _check(threshold, method, samples, replicates)
+    limits, every = _limits(output, threshold, below, any_of, all_of)
+    if samples is None:
+        samples = SAMPLES.get(method, 0)
+    _check(limits, method, samples, replicates)
+    replicates = REPLICATES if replicates is None else replicates
     if study.imported:
         raise InputError(
             f"{study.path}: [design] method = 'imported': rare events draw rows from laws, and"
             " imported rows have none; use another method"
         )
     options = RunOptions(workers, scheduler)
-    with evaluator_of(study, output.partition("[")[0], options) as evaluator:
-        margin = LimitState(study, output, threshold, below, evaluator)
+    names = {limit.output.partition("[")[0] for limit in limits}
+    with evaluator_of(study, names.pop() if len(names) == 1 else "", options) as evaluator:
+
+        def state(first: int) -> LimitState:
+            if len(limits) == 1:
+                return LimitState(study, *limits[0], evaluator, first)
+            return SystemState(study, limits, every, evaluator, first)
+
+        margin = state(0)
         generators = np.random.default_rng((study.design.seed, 1)).spawn(replicates)
         outcome = ESTIMATORS[method](margin, samples, generators)
         wide, lost = None, 0
         if outcome.plain:
-            apart = LimitState(study, output, threshold, below, evaluator, first=margin.rows)
+            apart = state(margin.rows)
             generators = np.random.default_rng((study.design.seed, 2)).spawn(replicates)
             wide = wide_search(apart, margin.dimension, samples, generators)
             lost = apart.failed
@@ -192,19 +226,54 @@ def rare_event(
         | outcome.variables,
         {"parameter": list(study.uncertain)},
         {
-            "output": output,
-            "threshold": float(threshold),
-            "side": "below" if below else "above",
-            "units": margin.output.unit,
+            **_event(margin),
             "method": method,
             "estimated_by": "wide" if by_wide else method,
-            "interval_of": REACHED if wide is not None and not by_wide else "event",
+            "interval_of": REACHED if outcome.is_partial and not by_wide else "event",
             "samples": samples,
             "study": study.text,
             "study_identity": study.identity,
         },
     )
     return ds.assign_attrs(notes="\n".join(caveats(ds, margin, outcome.disagreement)))
+
+
+def _limits(
+    output: str | None,
+    threshold: float | None,
+    below: bool,
+    any_of: Sequence[tuple[str, float, str]],
+    all_of: Sequence[tuple[str, float, str]],
+) -> tuple[list[EventLimit], bool]:
+    """Return the limits of an event, and whether all of them must be exceeded."""
+    single = output is not None or threshold is not None
+    if single + bool(any_of) + bool(all_of) != 1 or (single and None in (output, threshold)):
+        raise InputError("rare event: give an output and a threshold, or any_of, or all_of")
+    if output is not None and threshold is not None:
+        return [EventLimit(output, threshold, below)], False
+    given = any_of or all_of
+    if len(given) < 2:
+        raise InputError("rare event: any_of and all_of need at least two limits")
+    if faults := [side for *_, side in given if side not in ("above", "below")]:
+        raise InputError(f"rare event: a limit is 'above' or 'below', not {faults[0]!r}")
+    return [EventLimit(name, limit, side == "below") for name, limit, side in given], bool(all_of)
+
+
+def _event(margin: LimitState) -> dict[str, Any]:
+    """Return the attributes of an event: lists of those of its limits if there are several."""
+    parts = [
+        {
+            "output": part.limit.output,
+            "threshold": float(part.limit.threshold),
+            "side": "below" if part.limit.below else "above",
+            "units": part.output.unit,
+        }
+        for part in margin.parts
+    ]
+    if len(parts) == 1:
+        return parts[0]
+    lists = {name: [part[name] for part in parts] for name in parts[0]}
+    return lists | {"combination": "all" if margin.every else "any"}
 
 
 def estimate_of(outcome: _Outcome, wide: WideSearch | None) -> tuple[float, tuple[float, float]]:
@@ -304,16 +373,45 @@ def _importance(
     return _Outcome(estimates, interval, supported, failed_high, samples, 1.0, variables)
 
 
-ESTIMATORS = {"subset": _subset, "importance": _importance}
+def _active(margin: LimitState, samples: int, generators: list[np.random.Generator]) -> _Outcome:
+    learnt = active_learning(margin, samples, generators[0])
+    hidden = -log(1 - CONFIDENCE) / learnt.plain
+    interval, failed_high = learnt.interval, learnt.failed_high
+    if not learnt.probability:
+        interval, failed_high = (0.0, hidden), hidden
+    variables = {
+        "hidden_high": ((), hidden),
+        "emulated": ((), learnt.emulated),
+        "misclassified": ((), learnt.doubt),
+        "checks": ((), learnt.checks),
+        "contradicted": ((), learnt.contradicted),
+    }
+    estimates = np.array([learnt.probability])
+    return _Outcome(estimates, interval, hidden, failed_high, 0, 1.0, variables)
 
 
-def _check(threshold: float, method: str, samples: int, replicates: int) -> None:
+ESTIMATORS = {"subset": _subset, "importance": _importance, "active": _active}
+
+SAMPLES = {"subset": 1000, "importance": 1000, "active": 300}
+"""Rows by default: of a level, around design points, and in all."""
+
+REPLICATES = 8
+
+
+def _check(limits: list[EventLimit], method: str, samples: int, replicates: int | None) -> None:
+    active = method == "active"
     allowed = f"no such method{nearest(method, ESTIMATORS)} ({', '.join(ESTIMATORS)})"
     demands = {
-        f"threshold must be finite: {threshold!r}": isfinite(threshold),
+        **{
+            f"threshold must be finite: {limit.threshold!r}": isfinite(limit.threshold)
+            for limit in limits
+        },
         f"method '{method}': {allowed}": method in ESTIMATORS,
-        f"samples must be at least {_FEWEST}: {samples}": samples >= _FEWEST,
-        f"replicates must be at least 1: {replicates}": replicates >= 1,
+        f"samples must be at least {_FEWEST}: {samples}": samples >= _FEWEST
+        or method not in SAMPLES,
+        f"replicates must be at least 1: {replicates}": replicates is None or replicates >= 1,
+        "method 'active' has no replicates: its interval is from its last rows": not active
+        or replicates is None,
     }
     if faults := [line for line, met in demands.items() if not met]:
         raise InputError(*faults)
@@ -354,7 +452,7 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
             f"replicates differ by a factor of {factor:.2g}, more than their chains explain: a part"
             " of the event is entered by a jump; the high end is from plain rows"
         )
-    if "hidden_high" in ds:
+    if "wide" in ds:
         above = is_above(float(ds["wide"]), float(ds["wide_low"]), most)
         if not by_wide and (above or most == ds["wide_high"]):
             notes.append(
@@ -362,14 +460,26 @@ def caveats(ds: xr.Dataset, margin: LimitState, factor: float) -> list[str]:
                 f" '{ds.attrs['method']}': it may miss a part of the event"
                 + ("; the high end is theirs" if most == ds["wide_high"] else "")
             )
+    if "hidden_high" in ds:
         notes.append(
             f"an isolated part of the event, reached neither by a trend nor by a row, is"
             f" excluded only above {float(ds['hidden_high']):.2g} (95 %)"
         )
-        if ds["wide_failed"] > 0:
+        if "wide" in ds and ds["wide_failed"] > 0:
             notes.append(
                 f"{int(ds['wide_failed'])} of {int(ds['wide_rows'])} rows drawn wide are invalid:"
                 " missed parts are not searched for there"
+            )
+    if "checks" in ds:
+        notes.append(
+            f"{int(ds['contradicted'])} of the last {int(ds['checks'])} rows contradict the"
+            f" emulator, which alone gives {float(ds['emulated']):.2g}; the estimate is corrected"
+            " by them"
+        )
+        if not ds["misclassified"] <= DOUBT:
+            notes.append(
+                "learning ended with its rows, before the emulator was certain: more samples give a"
+                " narrower interval"
             )
     if np.isnan(most):
         notes.append("no interval: a single replicate does not show the scatter of its estimate")

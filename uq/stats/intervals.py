@@ -79,6 +79,40 @@ def exact_interval(
     return low, high
 
 
+def weighted_count_interval(
+    weights: Floats, largest: float, confidence: float = CONFIDENCE
+) -> Ends:
+    """Return the interval of the mean of a weighted sum of Poisson counts, by gamma laws [1]_.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (k,)
+        Contribution of each event seen; none if k is 0.
+    largest : float
+        Weight of an event that might have been seen.
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+        Without an event, zero and ``largest`` times 3.69.
+
+    References
+    ----------
+    .. [1] M. P. Fay, E. J. Feuer, "Confidence intervals for directly standardized rates", Stat.
+       Med. 16, 791-801 (1997).
+    """
+    tail = (1 - confidence) / 2
+    total, variance = float(weights.sum()), float((weights**2).sum())
+    low = 0.0
+    if total > 0:
+        low = variance / total * float(special.gammaincinv(total**2 / variance, tail))
+    total, variance = total + largest, variance + largest**2
+    if not total > 0:
+        return low, 0.0
+    return low, variance / total * float(special.gammainccinv(total**2 / variance, tail))
+
+
 def is_constant(values: Floats) -> bool:
     """Whether finite values are equal but for rounding."""
     return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())

@@ -24,6 +24,7 @@ MOST_OF_PROCESS = 600
 
 _FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estimated
 _DEGREE = 16
+_NUGGET = 0.01  # from which its estimate starts
 _ROWS_PER_TERM = (4.0, 2.0, 1.0, 0.5)  # among which terms are selected
 _RATIO = 3.0  # of largest to smallest value from which logarithms may be used
 _FLAT = 2.2  # kurtosis below which a column counts as uniform; 1.8 of a uniform law
@@ -189,8 +190,12 @@ def _chaos(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ..
     return predict
 
 
-def _kernel(scale: list[float], amplitude: float) -> Any:
-    return openturns().MaternModel(scale, [amplitude], 2.5)
+def _kernel(scale: list[float], amplitude: float, nugget: float | None = None) -> Any:
+    kernel = openturns().MaternModel(scale, [amplitude], 2.5)
+    if nugget is not None:
+        kernel.setNuggetFactor(nugget)
+        kernel.activateNuggetFactor(True)
+    return kernel
 
 
 def _process_fitter(z: Floats, y: Floats, kernel: Any) -> Any:
@@ -199,29 +204,41 @@ def _process_fitter(z: Floats, y: Floats, kernel: Any) -> Any:
     return ot.GaussianProcessFitter(ot.Sample(z), ot.Sample(y[:, None]), kernel, trend)
 
 
-def fit_process(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> dict[str, Any]:
+def fit_process(
+    z: Floats,
+    y: Floats,
+    uniform: tuple[bool, ...],
+    noisy: bool = False,
+    start: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
     """Return the most likely Gaussian process: a Matern 5/2 kernel, its scales and sd.
 
-    They are estimated from the first 150 rows: the cost grows with the cube of their number.
+    They are estimated from the first 150 rows: the cost grows with the cube of their number. The
+    variance of `noisy` rows about the process, relative to its own, is estimated, too (a nugget).
+    The search begins at an earlier estimate, `start`, if there is one.
     """
     ot = openturns()
     d = z.shape[1]
-    fitter = _process_fitter(z[:_FOR_SCALES], y[:_FOR_SCALES], _kernel([1.0] * d, 1.0))
+    start = start or {"scale": [1.0] * d, "amplitude": 1.0} | ({"nugget": _NUGGET} if noisy else {})
+    fitter = _process_fitter(z[:_FOR_SCALES], y[:_FOR_SCALES], _kernel(**start))
     search = ot.Cobyla()
     search.setMaximumCallsNumber(300)
     search.setMaximumAbsoluteError(1e-3)
     search.setMaximumRelativeError(1e-3)
     search.setCheckStatus(False)
     fitter.setOptimizationAlgorithm(search)
-    fitter.setOptimizationBounds(ot.Interval([0.02] * d, [50.0] * d))
+    low, high = ([1e-8], [10.0]) if noisy else ([], [])
+    fitter.setOptimizationBounds(ot.Interval([0.02] * d + low, [50.0] * d + high))
     fitter.run()
     kernel = fitter.getResult().getCovarianceModel()
-    return {"scale": list(kernel.getScale()), "amplitude": kernel.getAmplitude()[0]}
+    fit = {"scale": list(kernel.getScale()), "amplitude": kernel.getAmplitude()[0]}
+    return fit | ({"nugget": kernel.getNuggetFactor()} if noisy else {})
 
 
-def _process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
+def process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
+    """Return the prediction of the Gaussian process of `fit_process`, conditioned on rows."""
     ot = openturns()
-    fitter = _process_fitter(z, y, _kernel(fit["scale"], fit["amplitude"]))
+    fitter = _process_fitter(z, y, _kernel(**fit))
     fitter.setOptimizeParameters(False)
     fitter.run()
     regression = ot.GaussianProcessRegression(fitter.getResult())
@@ -252,7 +269,7 @@ def process_at(z: Floats, y: Floats, at: Floats) -> tuple[Floats, Floats]:
 
 CHAOS, PROCESS = "polynomial-chaos", "gaussian-process"
 
-_KINDS = {CHAOS: (fit_chaos, _chaos), PROCESS: (fit_process, _process)}
+_KINDS = {CHAOS: (fit_chaos, _chaos), PROCESS: (fit_process, process)}
 """Kind of regression -> its fit, and its prediction from plain numbers."""
 
 

@@ -1,7 +1,7 @@
 """Problems of structural reliability with published probabilities, as models."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -61,6 +61,11 @@ def _cliff(x, seed, settings):
     return {"stress": np.where(b < -4.0, 10.0, a)}, np.zeros(len(x), np.int8)
 
 
+def _rough(x, seed, settings):
+    """A normal value, and noise uniform on (-1/2, 1/2)."""
+    return {"rough": x[:, 0] + (seed >> np.uint64(11)) * 2.0**-53 - 0.5}, np.zeros(len(x), np.int8)
+
+
 def _sphere(x, seed, settings):
     """As far from the centre in every direction: no design point is alone."""
     return {"square": (x**2).sum(axis=1)}, np.zeros(len(x), np.int8)
@@ -85,6 +90,9 @@ OSCILLATOR = _model(
     "oscillator", Parts, _oscillator, {"excess": Output("1", "excess displacement")}
 )
 
+ROUGH = replace(
+    _model("rough", Plane, _rough, {"rough": Output("1", "a value and noise")}), random=True
+)
 CLIFF = _model("cliff", Plane, _cliff, {"stress": Output("1", "stress")})
 Twenty = NamedTuple(
     "Twenty", [(f"x{i}", Annotated[float, _any(f"x_{{{i}}}")]) for i in range(1, 21)]

@@ -29,6 +29,41 @@ def test_the_command_shows_and_writes_json(uq, write_study):
     assert uq("rare-event", path, "--output", "y").err.startswith("uq: give one of")
 
 
+def test_several_limits_are_options(uq, write_study):
+    path = write_study("linear", uncertain=("x1", "x2", "x3", "x4"), law='distribution="uniform",'
+                       "lower=0.0, upper=1.0")  # fmt: skip
+    options = ("--samples", 200, "--workers", 0)
+    ended = uq("rare-event", path, "--any", "y > 9.5", "--any", "y<0.5", *options)
+    assert ended.code == 0 and ended.out.startswith("P(y > 9.5 or y < 0.5)")
+    limits = ("--all", "y > 9", "--all", "y < 9.5")
+    document = json.loads(uq("rare-event", path, *limits, *options, "--json").out)
+    assert document["combination"] == "all" and document["side"] == ["above", "below"]
+    low, high = (document["probability"][key] for key in ("low", "high"))
+    assert low < (1 - 0.5**4) / 576 < high
+    for mistake, words in (
+        (("--any", "y > 9", "--all", "y < 9.5"), "uq: give one of --any and --all"),
+        (("--any", "y is 9", "--any", "y < 9.5"), "uq: --any 'y is 9' is not a limit"),
+        (("--any", "y > 9"), "rare event: any_of and all_of need at least two limits"),
+        (("--any", "y > 9", "--any", "y < 1", "--output", "y"), "uq: give --output with --above"),
+        (("--above", "9"), "uq: give an --output, or limits"),
+    ):
+        ended = uq("rare-event", path, *mistake)
+        assert ended.code == 2 and ended.err.startswith(words) and ended.err.count("\n") == 1
+
+
+def test_active_learning_shows_what_its_rows_contradict(uq, write_study):
+    path = write_study("linear", uncertain=("x1", "x2", "x3", "x4"), law='distribution="uniform",'
+                       "lower=0.0, upper=1.0")  # fmt: skip
+    options = ("--output", "y", "--above", "9.5", "--method", "active", "--samples", 150)
+    ended = uq("rare-event", path, *options, "--workers", 0)
+    assert ended.code == 0 and "by active" in ended.out and "rows           150" in ended.out
+    assert "of the last 50 rows contradict the emulator" in " ".join(ended.out.split())
+    document = json.loads(uq("rare-event", path, *options, "--workers", 0, "--json").out)
+    assert document["rows"] == 150 and document["checks"] == 50 and document["hidden_high"] < 1
+    low, high = (document["probability"][key] for key in ("low", "high"))
+    assert low <= 0.5**4 / 576 <= high
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

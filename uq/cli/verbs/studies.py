@@ -208,24 +208,39 @@ def run(
 def rare_event(
     study: given.StudyFile,
     output: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="NAME",
             help="Output, or one of its elements.",
             autocompletion=completion.complete_output,
         ),
-    ],
+    ] = None,
     above: Annotated[
         str | None, typer.Option(metavar="T", help="Probability of exceeding T.")
     ] = None,
     below: Annotated[
         str | None, typer.Option(metavar="T", help="Probability of staying below T.")
     ] = None,
+    any_of: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--any", metavar="LIMIT", help='Several limits, such as --any "a > 3" --any "b < 1".'
+        ),
+    ] = None,
+    all_of: Annotated[
+        list[str] | None, typer.Option("--all", metavar="LIMIT", help="The same, all at once.")
+    ] = None,
     method: Annotated[
-        str, typer.Option(metavar="M", help="subset, or importance (FORM; smooth outputs).")
+        str,
+        typer.Option(metavar="M", help="subset, importance (FORM), or active (dear rows)."),
     ] = "subset",
-    samples: Annotated[int, typer.Option(metavar="N", help="Rows of each level.")] = 1000,
-    replicates: Annotated[int, typer.Option(metavar="R", help="Repetitions of the procedure.")] = 8,
+    samples: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Rows of each level, 1000; of active: in all, 300."),
+    ] = None,
+    replicates: Annotated[
+        int | None, typer.Option(metavar="R", help="Repetitions of the procedure, 8.")
+    ] = None,
     workers: given.Workers = None,
     scheduler: given.Scheduler = None,
     model: given.ModelReference = None,
@@ -233,15 +248,21 @@ def rare_event(
 ) -> int:
     """Estimate the probability of a rare event."""
     from uq.cli.progress import say
-    from uq.cli.rare_event import limit, show, warn
+    from uq.cli.rare_event import limits, show, warn, written
     from uq.execution.loading import load_study
     from uq.explore import rare_events
 
     loaded = load_study(study, model, say)
-    threshold, is_below = limit(loaded, output, above, below)
-    warn(loaded, output)
+    event = limits(loaded, output, above, below, any_of or [], all_of or [])
+    warn(loaded, event)
     say_when_interrupted("interrupted; nothing was written")
     ds = rare_events.rare_event(
-        loaded, output, threshold, is_below, method, samples, replicates, workers, scheduler
+        loaded,
+        method=method,
+        samples=samples,
+        replicates=replicates,
+        workers=workers,
+        scheduler=scheduler,
+        **event,
     )
-    return show(ds, json, loaded, threshold)
+    return show(ds, json, loaded, *(threshold for _, threshold in written(event)))
