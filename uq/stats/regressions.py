@@ -264,7 +264,7 @@ def process_at(z: Floats, y: Floats, at: Floats) -> tuple[Floats, Floats]:
     at : ndarray, shape (n, d)
     """
     uniform = (False,) * z.shape[1]
-    return _process(fit_process(z, y, uniform), z, y, uniform)(at)
+    return process(fit_process(z, y, uniform), z, y, uniform)(at)
 
 
 CHAOS, PROCESS = "polynomial-chaos", "gaussian-process"
