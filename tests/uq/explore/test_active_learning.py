@@ -11,6 +11,7 @@ from scipy import integrate, stats
 
 from uq.cli.rare_event import as_json
 from uq.errors import InputError
+from uq.explore.active_learning import EventEmulator
 from uq.explore.limit_state import EventLimit, scale_of
 from uq.explore.rare_events import rare_event
 from uq.stats.intervals import weighted_count_interval
@@ -110,6 +111,21 @@ def test_a_jump_that_the_emulator_predicts_badly_is_corrected_by_rows(of, output
     assert covers(ds, truth)
     assert int(ds["contradicted"]) > 0
     assert interval(ds)[1] > 1.3 * interval(ds)[0]
+
+
+@pytest.mark.parametrize("shift", [-0.1, 0.1])
+def test_the_interval_holds_if_the_emulator_is_wrong(monkeypatch, shift):
+    predicted = EventEmulator.__call__
+
+    def wrong(self, u):
+        probability, mean, most = predicted(self, u)
+        return np.where(mean + shift > 0, 0.999, 1e-9), mean + shift, most + shift
+
+    monkeypatch.setattr(EventEmulator, "__call__", wrong)
+    ds = rare_event(branches(), "sum", 4.753424, method="active", samples=200, workers=0)
+    assert int(ds["contradicted"]) > 3
+    assert not 0.7e-6 < float(ds["emulated"]) < 1.4e-6
+    assert covers(ds, 1e-6)
 
 
 def test_rows_with_their_own_random_numbers_are_within_the_interval():
