@@ -11,6 +11,7 @@ References
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from math import log
 from typing import Any, NamedTuple
 
@@ -48,6 +49,7 @@ _FEWEST_OF_RING = 100  # points
 _SETTLED = 2  # populations in succession that meet `DOUBT`
 _DRAWN = 30  # points drawn wide for each that is far from the event
 _RAREST = 1e-12
+_NUGGETS = (1e-6, 1e-4, 1e-2)
 _UNIT = 3.0  # standard deviations to a unit of the regression's inputs
 
 Score = tuple[Floats, Floats, Floats]
@@ -161,12 +163,9 @@ class EventEmulator:
             y[y == 0] = -np.abs(y[y != 0]).min() / 2  # on the threshold is outside
             z, centre, sd = self.u[kept] / _UNIT, y.mean(), y.std()
             y = (y - centre) / sd
-            flat = (False,) * z.shape[1]
             fit = self._fits[number] if self._fits else None
-            if fit is None or renew:
-                fit = fit_process(z, y, flat, noisy=True, start=fit)
+            fit, predict = _fitted(z, y, fit, renew or fit is None)
             fits.append(fit)
-            predict = process(fit, z, y, flat)
             self._predict.append(_in_units(predict, float(centre), float(sd)))
         self._fits = fits
         self._fitted = len(self.u) if renew else self._fitted
@@ -178,6 +177,22 @@ class EventEmulator:
         if self._margin.every:
             return each.prod(axis=0), means.min(axis=0), most.min(axis=0)
         return 1 - (1 - each).prod(axis=0), means.max(axis=0), most.max(axis=0)
+
+
+def _fitted(
+    z: Floats, y: Floats, start: Mapping[str, Any] | None, renew: bool
+) -> tuple[Mapping[str, Any], Predict]:
+    """Return a Gaussian process and its prediction, with a nugget that OpenTURNS can factorise."""
+    flat = (False,) * z.shape[1]
+    fit = start or {"scale": [1.0] * z.shape[1], "amplitude": 1.0, "nugget": _NUGGETS[0]}
+    if renew:
+        with suppress(RuntimeError):
+            fit = fit_process(z, y, flat, noisy=True, start=fit if start else None)
+    for nugget in (0.0, *_NUGGETS):
+        with suppress(RuntimeError):
+            safe = {**fit, "nugget": max(nugget, fit["nugget"])}
+            return safe, process(safe, z, y, flat)
+    raise InputError("method 'active': no Gaussian process fits the rows; use method 'subset'")
 
 
 def _in_units(predict: Predict, centre: float, sd: float) -> Predict:

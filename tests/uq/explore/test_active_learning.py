@@ -11,6 +11,7 @@ from scipy import integrate, stats
 
 from uq.cli.rare_event import as_json
 from uq.errors import InputError
+from uq.explore import active_learning
 from uq.explore.active_learning import EventEmulator
 from uq.explore.limit_state import EventLimit, scale_of
 from uq.explore.rare_events import rare_event
@@ -187,6 +188,20 @@ def test_without_openturns_there_is_a_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, "openturns", None)
     with pytest.raises(InputError, match=r"pip install 'vibrolife\[reliability\]'"):
         rare_event(linear(), "y", 9.0, method="active", workers=0)
+
+
+def test_a_process_that_cannot_be_factorised_gets_a_nugget(monkeypatch):
+    process, calls = active_learning.process, []
+
+    def refusing(fit, z, y, uniform):
+        calls.append(fit["nugget"])
+        if fit["nugget"] < 1e-6:
+            raise RuntimeError("no eigenvalue")
+        return process(fit, z, y, uniform)
+
+    monkeypatch.setattr(active_learning, "process", refusing)
+    ds = rare_event(branches(), "sum", 3.0, method="active", samples=100, workers=0)
+    assert min(calls) < 1e-6 and covers(ds, stats.norm.sf(3.0))
 
 
 def test_a_weighted_count_has_the_limits_of_poisson():
