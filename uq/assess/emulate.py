@@ -68,9 +68,10 @@ def emulate(
     """Fit an emulator to the rows of a result: regressions of its outputs on its inputs.
 
     For each element, a sparse polynomial chaos expansion and a Gaussian process are compared by
-    predictions of each fifth of the rows from the others; the better one is kept. Lives, and
-    positive outputs that span a factor of ten, are fitted by logarithms. Rows that never end, are
-    censored or undefined, and categories, are predicted by regressions of their indicators.
+    predictions of each fifth of the rows from the others; the better one is kept. Lives are
+    fitted by logarithms, and so are positive outputs that span a factor of ten if they err less.
+    Rows that never end, are censored or undefined, and categories, are predicted by regressions of
+    their indicators.
 
     Parameters
     ----------
@@ -107,6 +108,7 @@ def emulate(
         raise InputError(f"an emulator needs plain rows; those of this result {why}")
     openturns()
     rows = result.independent
+    failed = int(rows.failed.sum())
     rows = rows.take(np.flatnonzero(~rows.failed)[:MOST_ROWS])
     ds = rows.dataset
     names = outputs or rows.shown_outputs(rows.analysis)
@@ -147,6 +149,7 @@ def emulate(
         },
         elements,
         refused,
+        failed,
     )
     if not elements:
         raise InputError(*(f"{name}: no emulator: {why}" for name, why in refused.items()))
@@ -241,13 +244,19 @@ def _of_number(
     if len(rows) < FEWEST:
         raise _Refused(f"{counted(len(rows), 'row')} with a value; {FEWEST} are needed")
     y = values[rows]
-    logarithmic = bool(y.min() > 0 and (output.is_lifetime or y.max() > _RATIO * y.min()))
-    if output.is_lifetime and not logarithmic:
-        raise _Refused("some lives are zero, which have no logarithm")
-    y = np.log(y) if logarithmic else y
     if not np.ptp(y) > 0:
         raise _Refused("has the same value in all rows")
-    regression = regress(z[rows], y, rows, parts[rows], uniform)
+    if output.is_lifetime and not y.min() > 0:
+        raise _Refused("some lives are zero, which have no logarithm")
+    candidates = []
+    spans = bool(y.min() > 0 and y.max() > _RATIO * y.min())
+    for logarithmic in [True] if output.is_lifetime else [False, True][: 1 + spans]:
+        t = np.log(y) if logarithmic else y
+        regression = regress(z[rows], t, rows, parts[rows], uniform)
+        missed = t - regression.sd * np.array(regression.errors)
+        errors = y - np.exp(np.minimum(missed, 690.0)) if logarithmic else y - missed
+        candidates.append((float(np.mean(errors**2)), logarithmic, regression))
+    _, logarithmic, regression = min(candidates, key=lambda candidate: candidate[0])
     _check(regression)
     classifier = None
     if len(present) > 1:
@@ -340,7 +349,6 @@ def _parameters(ds: xr.Dataset, varying: set[str]) -> dict[str, dict[str, Any]]:
             "meaning": attrs["long_name"],
             "source": attrs["source"],
             "bounds": [float(bound) for bound in bounds],
-            "nominal": float(np.median(values)),
             "value": None if name in varying else float(values[0]),
         }
     return parameters
@@ -372,7 +380,8 @@ def emulator_facts(emulator: Emulator) -> Fact:
         name: Fact({"kind": None, "q2": None, "error_sd": None, "refused": why}, (_check,))
         for name, why in emulator.refused.items()
     }
-    return Fact({"rows": len(emulator.x), "outputs": outputs}, (emulate,))
+    members = {"rows": len(emulator.x), "failed": emulator.failed, "outputs": outputs}
+    return Fact(members, (emulate,))
 
 
 def _numbers(fits: list[ElementFit]) -> dict[str, Any]:

@@ -182,6 +182,9 @@ def inputs_facts(result: Result, only: str = "") -> Fact:
 FEWEST_PAIRS = 30
 """Fewer pairs of values are not fitted."""
 
+MOST_CORRELATED = 0.999
+"""Largest rank correlation, either sign, of two columns to which copulas are fitted."""
+
 MOST_TIED = 0.2
 """Largest share of equal values in a column."""
 
@@ -245,6 +248,8 @@ def copula_fits(data: Any, first: str, second: str, refits: int = 0, seed: int =
     >>> fits.loc["normal", "rank_correlation"].round(1).item()
     0.9
     """
+    if refits < 0:
+        raise InputError(f"copula fits: refits must not be negative: {refits}")
     columns = _column(data, first), _column(data, second)
     sizes = sorted({len(column) for column in columns})
     if sizes[1:] or sizes[0] < FEWEST_PAIRS:
@@ -258,6 +263,11 @@ def copula_fits(data: Any, first: str, second: str, refits: int = 0, seed: int =
                 f" (allowed: {percent(MOST_TIED)}); their ranks do not determine a copula"
             )
     points = _pseudo_observations(columns[0]), _pseudo_observations(columns[1])
+    if abs(rank := float(np.corrcoef(*points)[0, 1])) > MOST_CORRELATED:
+        raise InputError(
+            f"copula fits: the rank correlation of {first} and {second} is {rank:.5f}"
+            f" (allowed: {MOST_CORRELATED} at most); one determines the other, which equals states"
+        )
     names = [(name, False) for name in COPULAS]
     names += [(name, True) for name in COPULAS if has_survival(name)]
     rng = np.random.default_rng(seed)
@@ -273,7 +283,7 @@ def copula_fits(data: Any, first: str, second: str, refits: int = 0, seed: int =
         "conclusion": _conclusion(table, max(tied.values())),
         "pairs": sizes[0],
         "tied": max(tied.values()),
-        "rank_correlation": float(np.corrcoef(*points)[0, 1]),
+        "rank_correlation": rank,
     }
     return table
 

@@ -193,6 +193,12 @@ def _emulated(result: Result, path: Path) -> _Twin:
     emulator = emulator_at(path)
     data = read_toml(result.dataset.attrs["study"])
     data.pop("analysis", None)  # it may name outputs without an emulator
+    constants = {
+        str(name): float(variable)
+        for name, variable in result.dataset.data_vars.items()
+        if variable.attrs.get("role") == "fixed"
+    }
+    data["fixed"] = data.get("fixed", {}) | constants  # the nominal values of its own model, too
     with first_fault_alone():
         study = study_from_text(study_text(data), "study of this result", str(path))
     study = study.with_samples(int(result.dataset.attrs["samples"]))

