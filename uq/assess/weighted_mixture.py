@@ -19,12 +19,12 @@ from uq.assess.sample import (
     on_side,
     share,
 )
-from uq.assess.scale_laws import posterior_terms
+from uq.assess.scale_laws import ConditionalScale, posterior_terms
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.stats.dependent_rows import Dependence
 from uq.stats.estimate import Estimate
-from uq.stats.importance_weights import ImportanceWeights
+from uq.stats.importance_weights import ImportanceWeights, effective_rows
 from uq.stats.intervals import (
     CONFIDENCE,
     ROUNDING,
@@ -84,14 +84,16 @@ class WeightedMixture(Sample):
     def below(self, threshold: float) -> Estimate:
         """Estimate P(Y < threshold), undefined rows on neither side."""
         kept = ~self.element.failed
-        return self._share(self.element.below(threshold), kept, self._dependence(kept, threshold))
+        numbers = self.element.below(threshold)
+        estimate = self._share(numbers, kept, self._dependence(kept, threshold))
+        return self._cautious(estimate, self.element.plain.below(threshold), kept)
 
     def above(self, threshold: float) -> Estimate:
         """Estimate P(Y > threshold), undefined rows on neither side."""
         kept = ~self.element.failed
-        return self._share(
-            self.element.above(threshold), kept, self._dependence(kept, threshold, -1)
-        )
+        numbers = self.element.above(threshold)
+        estimate = self._share(numbers, kept, self._dependence(kept, threshold, -1))
+        return self._cautious(estimate, self.element.plain.above(threshold), kept)
 
     def outliving(self, time: float) -> Estimate:
         """Estimate P(T > time) among the rows that have a life; unknown once rows were censored."""
@@ -178,6 +180,26 @@ class WeightedMixture(Sample):
             numbers[kept], self._weights(kept), dependence, None, self.confidence
         )
         return self._trusted(estimate, kept)
+
+    def _cautious(self, estimate: Estimate, hits: Floats, kept: Mask) -> Estimate:
+        """Return a probability with an interval as wide as few hits of the rows make it.
+
+        Where an input is integrated given another one that it depends on, rows that carry a rare
+        event may all be absent, and the others seem to agree. Then the end away from 0, or 1, is no
+        nearer than that of the plain rows: for up to 10 effective hits, fading out at 20.
+        """
+        if not isinstance(self.element.law, ConditionalScale) or not estimate.has_interval:
+            return estimate
+        plain = self._share(hits, kept, self.dependence[kept])
+        weights, is_rare = self._weights(kept), estimate.value < 0.5
+        carried = (hits if is_rare else 1 - hits)[kept] * (1.0 if weights is None else weights)
+        extent = float(np.clip(2 - effective_rows(carried) / 10, 0.0, 1.0))
+        if not (extent > 0 and plain.has_interval):
+            return estimate
+        if is_rare:
+            high = estimate.high + extent * max(plain.high - estimate.high, 0.0)
+            return replace(estimate, high=high)
+        return replace(estimate, low=estimate.low - extent * max(estimate.low - plain.low, 0.0))
 
     def _weights(self, kept: Mask) -> Floats | None:
         """Return the weights of some rows."""
