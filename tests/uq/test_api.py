@@ -50,6 +50,8 @@ def test_everything_promised_is_there():
             "between",
             "import_lives",
             "two_fidelities",
+            "emulate",
+            "next_rows",
             "running_estimates",
             "enough",
             "compare",

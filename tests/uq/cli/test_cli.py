@@ -16,8 +16,8 @@ from uq.cli.printing import print_json
 
 GROUPS = {
     "Start": "models init simulate import schema serve",
-    "Run": "plan run status extend rerun",
-    "Read": "summary sensitivity levels twin export plot report",
+    "Run": "plan run status extend next-rows rerun",
+    "Read": "summary sensitivity levels twin emulate export plot report",
     "Decide": "compare what-if fleet rare-event",
     "Learn": "update next-inspection",
     "Check": "check convergence verify row trace",

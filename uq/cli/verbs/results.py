@@ -66,7 +66,10 @@ def next_rows(
     model: given.ModelReference = None,
     json: given.Json = False,
 ) -> None:
-    """Propose the rows to compute next; 'uq extend --next N' computes them."""
+    """Propose rows to compute next.
+
+    'uq extend --next N' computes the same rows.
+    """
     from uq.cli import printing
     from uq.explore import next_rows as proposal
     from uq.result.result import Result
@@ -467,7 +470,7 @@ def twin(
     model: given.ModelReference = None,
     json: given.Json = False,
 ) -> None:
-    """Sharpen estimates with many rows of a cheap output, or of an emulator."""
+    """Sharpen estimates with rows of a cheap output or emulator."""
     from uq.cli import estimates
 
     estimates.twin(result, model, emulator, json)
@@ -487,7 +490,10 @@ def emulate(
     ] = None,
     json: given.Json = False,
 ) -> None:
-    """Learn the outputs of a result: a model for 'uq run --model FILE.emulator'."""
+    """Learn the outputs of a result, as a model.
+
+    'uq run STUDY --model FILE.emulator' runs it.
+    """
     from uq.cli import estimates
 
     with _naming_new_folders(file):
