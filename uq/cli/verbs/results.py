@@ -470,7 +470,7 @@ def twin(
     model: given.ModelReference = None,
     json: given.Json = False,
 ) -> None:
-    """Sharpen estimates with rows of a cheap output or emulator."""
+    """Sharpen estimates by a cheap output or an emulator."""
     from uq.cli import estimates
 
     estimates.twin(result, model, emulator, json)
