@@ -6,7 +6,7 @@ quarter with 400. scikit-learn is left out where it is not installed.
 """
 
 import sys
-from functools import cache
+from functools import cache, partial
 from importlib.util import find_spec
 
 import numpy as np
@@ -21,7 +21,7 @@ from uq.stats.control_variate import controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import mean_interval, share_interval
 from uq.stats.moments import moments
-from uq.stats.regressions import FOLDS, Predictor, regress, scale_of
+from uq.stats.regressions import FOLDS, Predictor, regress, scale_of, scaled
 
 ROWS = (100, 200, 400)
 NEW = 2000
@@ -119,17 +119,12 @@ def openturns_alone(x, y, new):
 def fitted(x, y):
     """Return the regression, scaled inputs, parts and laws that `uq emulate` uses."""
     scales = [scale_of(str(i), column) for i, column in enumerate(x.T)]
-    z = np.column_stack([scale(column) for scale, column in zip(scales, x.T, strict=True)])
+    z = scaled(scales, x)
     uniform = tuple(scale.uniform for scale in scales)
     parts = np.arange(len(y)) % FOLDS
     regression = regress(z, y, np.arange(len(y)), parts, uniform)
     predictor = Predictor(regression, z, parts, uniform)
-
-    def scaled(new):
-        pairs = zip(scales, new.T, strict=True)
-        return np.column_stack([scale(np.ascontiguousarray(c)) for scale, c in pairs])
-
-    return regression, predictor, scaled, parts
+    return regression, predictor, partial(scaled, scales), parts
 
 
 def errors(repetitions):
@@ -146,8 +141,8 @@ def errors(repetitions):
                 rng = np.random.default_rng((seed, n))
                 x, new = (inputs(laws, rng.random((k, len(laws)))) for k in (n, NEW))
                 y, expected = function(x), function(new)
-                regression, predictor, scaled, _ = fitted(x, y)
-                predictions = [predictor(scaled(new))[0], *(p(x, y, new) for p in peers.values())]
+                regression, predictor, scale, _ = fitted(x, y)
+                predictions = [predictor(scale(new))[0], *(p(x, y, new) for p in peers.values())]
                 true = [np.sqrt(np.mean((p - expected) ** 2)) / expected.std() for p in predictions]
                 table.append([regression.error_sd / y.std(), *true])
                 kinds.append(regression.kind)
@@ -200,9 +195,9 @@ def coverage(repetitions):
 
 def with_emulator(x, y, many, limit):
     """Return mean and share beyond a limit with an emulator as control variate, and without."""
-    _, predictor, scaled, parts = fitted(x, y)
-    here = predictor.cross_fitted(scaled(x), parts)
-    there = predictor.cross_fitted(scaled(many), np.arange(len(many)) % FOLDS)
+    _, predictor, scale, parts = fitted(x, y)
+    here = predictor.cross_fitted(scale(x), parts)
+    there = predictor.cross_fitted(scale(many), np.arange(len(many)) % FOLDS)
     kept, hits = np.ones(len(y), bool), y > limit
     controls = [np.stack([c, np.zeros(len(c))], axis=1) for c in (here, there)]
     mean = controlled_mean(y, kept, controls=controls[0], many=controls[1])[0]

@@ -35,6 +35,7 @@ from uq.stats.regressions import (
     openturns,
     regress,
     scale_of,
+    scaled,
     standard_moment,
 )
 from uq.study.definition import study_from_text
@@ -125,7 +126,7 @@ def emulate(
         raise InputError(f"{counted(len(rows), 'row')}: an emulator needs {FEWEST} at least")
     scales = [scale_of(name, values) for name, values in varying.items()]
     x = np.column_stack(list(varying.values()))
-    z = np.column_stack([scale(column) for scale, column in zip(scales, x.T, strict=True)])
+    z = scaled(scales, x)
     parts, uniform = parts_of(x), tuple(scale.uniform for scale in scales)
     elements, refused = dict[str, list[ElementFit]](), dict[str, str]()
     companions = {cause_name(name) for name, output in rows.outputs.items() if output.is_lifetime}
@@ -142,7 +143,7 @@ def emulate(
         _settings(ds),
         scales,
         x.tolist(),
-        {name: _declared(ds, rows.outputs[name], name) for name in elements},
+        {name: _declared(rows.outputs[name]) for name in elements},
         {
             str(dim): ds[dim].values.tolist()
             for dim in dict.fromkeys(dim for name in elements for dim in rows.outputs[name].dims)
@@ -365,7 +366,7 @@ def _settings(ds: xr.Dataset) -> dict[str, Any]:
     return plain
 
 
-def _declared(ds: xr.Dataset, output: Output, name: str) -> dict[str, Any]:
+def _declared(output: Output) -> dict[str, Any]:
     """Return the attributes of an emulated output: its errors are those of the emulator."""
     kept = "unit", "meaning", "kind", "dims", "may_be_undefined", "categories", "success"
     attributes = {field: getattr(output, field) for field in kept}

@@ -86,14 +86,14 @@ class WeightedMixture(Sample):
         kept = ~self.element.failed
         numbers = self.element.below(threshold)
         estimate = self._share(numbers, kept, self._dependence(kept, threshold))
-        return self._cautious(estimate, self.element.plain.below(threshold), kept)
+        return self._cautious(estimate, lambda plain: plain.below(threshold), kept)
 
     def above(self, threshold: float) -> Estimate:
         """Estimate P(Y > threshold), undefined rows on neither side."""
         kept = ~self.element.failed
         numbers = self.element.above(threshold)
         estimate = self._share(numbers, kept, self._dependence(kept, threshold, -1))
-        return self._cautious(estimate, self.element.plain.above(threshold), kept)
+        return self._cautious(estimate, lambda plain: plain.above(threshold), kept)
 
     def outliving(self, time: float) -> Estimate:
         """Estimate P(T > time) among the rows that have a life; unknown once rows were censored."""
@@ -181,7 +181,9 @@ class WeightedMixture(Sample):
         )
         return self._trusted(estimate, kept)
 
-    def _cautious(self, estimate: Estimate, hits: Floats, kept: Mask) -> Estimate:
+    def _cautious(
+        self, estimate: Estimate, hits_of: Callable[[Element], Floats], kept: Mask
+    ) -> Estimate:
         """Return a probability with an interval as wide as few hits of the rows make it.
 
         Where an input is integrated given another one that it depends on, rows that carry a rare
@@ -190,6 +192,7 @@ class WeightedMixture(Sample):
         """
         if not isinstance(self.element.law, ConditionalScale) or not estimate.has_interval:
             return estimate
+        hits = hits_of(self.element.plain)
         plain = self._share(hits, kept, self.dependence[kept])
         weights, is_rare = self._weights(kept), estimate.value < 0.5
         carried = (hits if is_rare else 1 - hits)[kept] * (1.0 if weights is None else weights)

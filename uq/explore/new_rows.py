@@ -274,9 +274,19 @@ def _study_of(study_rows: Result, updated: Posterior, model: str | None) -> Stud
             f"new rows cannot be drawn: {why}; run the study with more samples, or with a law that"
             " allows for what was found"
         )
+    samples = study_rows.nesting.samples // int(study_rows.dataset.attrs["replicates"])
+    return study_behind(study_rows, samples, model)
+
+
+def study_behind(study_rows: Result, samples: int, model: str | None) -> Study:
+    """Return the study of rows, with a number of samples, if its model is still the same.
+
+    Raises
+    ------
+    InputError
+    """
     attrs = study_rows.dataset.attrs
     recorded = attrs["study"], attrs["study_identity"], attrs["model_version"]
-    samples = study_rows.nesting.samples // int(attrs["replicates"])
     study, change = study_here(*recorded, samples, "result", model)
     if change:
         raise InputError(f"the result was computed with another model ({change}): run it again")

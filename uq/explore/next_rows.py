@@ -14,23 +14,19 @@ from scipy import special
 from uq.contract import Floats
 from uq.errors import InputError, choices
 from uq.execution.options import DEFAULTS, RunOptions, ignore
-from uq.execution.recomputation import study_here
 from uq.execution.runner import run_study
-from uq.explore.new_rows import with_given_rows
+from uq.explore.new_rows import study_behind, with_given_rows
 from uq.files.whole_files import check_target, write_result
 from uq.learning.importance import own_rows, with_rounds
+from uq.machines.emulator import parts_of
 from uq.result.result import AnyResult, Result
 from uq.result.weights import INDEPENDENT_ROUNDS, MOST, ROUND, WEIGHT
-from uq.sampling.unit_cube import hashed
-from uq.stats.regressions import process_at, scale_of
+from uq.stats.regressions import FOLDS, process_at, scale_of, scaled
 from uq.study.definition import Study
 from uq.study.row_sampling import physical
 
 POOL = 8192
 """Rows drawn from the laws of the study, among which the next rows are chosen."""
-
-PARTS = 5
-"""Number of parts of the rows: proposals of a part are made from the rows of the others."""
 
 _MOST_LEARNT = 400
 _LEAST = 1e-12
@@ -178,12 +174,8 @@ def _study_of(result: Result, model: str | None) -> Study:
             "next rows: need independent rows drawn from laws, not those of a"
             f" '{result.design_name}' design"
         )
-    attrs = own_rows(result).dataset.attrs
-    recorded = attrs["study"], attrs["study_identity"], attrs["model_version"]
-    study, change = study_here(*recorded, int(attrs["samples"]), "result", model)
-    if change:
-        raise InputError(f"the result was computed with another model ({change}): run it again")
-    return study
+    study_rows = own_rows(result)
+    return study_behind(study_rows, int(study_rows.dataset.attrs["samples"]), model)
 
 
 def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats, Floats]:
@@ -194,8 +186,8 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
     scores : ndarray, shape (rows, d)
     weights : ndarray, shape (len(result) + rows,)
     """
-    if not PARTS <= rows <= POOL // 8:
-        raise InputError(f"next rows: {rows} must be between {PARTS} and {POOL // 8}")
+    if not FOLDS <= rows <= POOL // 8:
+        raise InputError(f"next rows: {rows} must be between {FOLDS} and {POOL // 8}")
     names, aims = list(study.uncertain), [*_aims(result), aim]
     values = np.column_stack([result.dataset[name].values for name in names]).astype(float)
     scales = [scale_of(name, column) for name, column in zip(names, values.T, strict=True)]
@@ -204,19 +196,15 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
     x = physical(study, special.ndtr(pool))
     columns = [study.model.parameter_names.index(name) for name in names]
 
-    def scaled(table: Floats) -> Floats:
-        pairs = zip(scales, table.T, strict=True)
-        return np.column_stack([scale(np.ascontiguousarray(column)) for scale, column in pairs])
-
-    z, z_pool = scaled(values), scaled(x[:, columns])
+    z, z_pool = scaled(scales, values), scaled(scales, x[:, columns])
     rounds = result.dataset[ROUND].values if result.has_rounds else np.zeros(len(result), int)
-    part = (hashed(values) % np.uint64(PARTS)).astype(int)
+    part = parts_of(values)
     for number in range(1, len(aims)):
         inside = np.flatnonzero(rounds == number)
         part[inside] = _parts_of_round(len(inside))
     chosen, new_part = np.empty(rows, int), _parts_of_round(rows)
     weights, taken = np.empty(len(result) + rows), np.zeros(POOL, bool)
-    for k in range(PARTS):
+    for k in range(FOLDS):
         mine, fresh = np.flatnonzero(part == k), np.flatnonzero(new_part == k)
         density = np.full(POOL + len(mine), float((rounds[mine] == 0).sum()))
         for number, earlier in enumerate(aims):
@@ -237,7 +225,7 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
 
 def _parts_of_round(rows: int) -> NDArray[np.intp]:
     """Return the part for which each row of a round is drawn."""
-    return np.sort(np.arange(rows) % PARTS)
+    return np.sort(np.arange(rows) % FOLDS)
 
 
 def _gain(result: Result, z: Floats, learnt: NDArray[np.intp], at: Floats, aim: Aim) -> Floats:

@@ -4,7 +4,7 @@ import hashlib
 import json
 from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
@@ -25,7 +25,7 @@ from uq.errors import InputError
 from uq.files.whole_files import file_there
 from uq.machines.row_by_row import NoSettings
 from uq.sampling.unit_cube import hashed, uniform
-from uq.stats.regressions import FOLDS, Predictor, Regression, Scale
+from uq.stats.regressions import FOLDS, Predictor, Regression, Scale, scaled
 from uq.text.numbers import number
 
 FORMAT = 1
@@ -148,7 +148,7 @@ class Emulator:
     def predictors(self) -> dict[str, list[tuple[ElementFit, Predictor | None, list[Predictor]]]]:
         """The fits of each element with their predictions, by output."""
         x = np.array(self.x)
-        z, parts = self.scaled(x), parts_of(x)
+        z, parts = scaled(self.scales, x), parts_of(x)
 
         def prepared(regression: Regression) -> Predictor:
             return Predictor(regression, z, parts, self.uniform)
@@ -164,13 +164,6 @@ class Emulator:
             ]
             for name, fits in self.elements.items()
         }
-
-    def scaled(self, x: Floats) -> Floats:
-        """Return the inputs of the regressions, scaled, shape (n, d)."""
-        columns = [
-            scale(np.ascontiguousarray(c)) for scale, c in zip(self.scales, x.T, strict=True)
-        ]
-        return np.column_stack(columns)
 
 
 def parts_of(x: Floats) -> NDArray[np.int64]:
@@ -209,7 +202,7 @@ class EmulatedRows:
         emulator = self.emulator
         columns = dict(zip(self.names, x.T, strict=True))
         inputs = np.column_stack([columns[scale.name] for scale in emulator.scales])
-        z = emulator.scaled(inputs)
+        z = scaled(emulator.scales, inputs)
         status, messages = np.zeros(len(x), np.int8), dict[int, str]()
         for i, message in self._faults(columns, z):
             status[i], messages[i] = Status.RAISED, message
@@ -323,12 +316,8 @@ def emulator_at(path: Path) -> Emulator:
 
 def text_of(emulator: Emulator) -> str:
     """Return the text of the file of an emulator."""
-    return json.dumps({"vibrolife_emulator": FORMAT} | vars_of(emulator), allow_nan=True) + "\n"
-
-
-def vars_of(emulator: Emulator) -> dict[str, Any]:
-    """Return the fields of an emulator, without what is cached."""
-    return {name: getattr(emulator, name) for name in Emulator.__dataclass_fields__}
+    declared = {field.name: getattr(emulator, field.name) for field in fields(emulator)}
+    return json.dumps({"vibrolife_emulator": FORMAT} | declared) + "\n"
 
 
 def _fit_of(plain: list[Any]) -> ElementFit:
@@ -418,13 +407,13 @@ def _with_tuples(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _parameters_of(emulator: Emulator) -> type:
-    fields = emulator.parameters
+    parameters = emulator.parameters
     # Of a model that is not installed, the nominal value of what varies in its rows is not known.
     defaults = [
         float("nan") if declared["value"] is None else declared["value"]
-        for declared in fields.values()
+        for declared in parameters.values()
     ]
-    made: Any = namedtuple("Parameters", fields, defaults=defaults)  # type: ignore[misc]
+    made: Any = namedtuple("Parameters", parameters, defaults=defaults)  # type: ignore[misc]
     made.__annotations__ = {
         name: Annotated[
             float,
@@ -436,7 +425,7 @@ def _parameters_of(emulator: Emulator) -> type:
                 declared["source"],
             ),
         ]
-        for name, declared in fields.items()
+        for name, declared in parameters.items()
     }
     return made
 

@@ -103,6 +103,12 @@ def scale_of(name: str, values: Floats) -> Scale:
     )
 
 
+def scaled(scales: list[Scale], x: Floats) -> Floats:
+    """Return inputs scaled, shape (n, d), a column for each scale."""
+    pairs = zip(scales, x.T, strict=True)
+    return np.column_stack([scale(np.ascontiguousarray(column)) for scale, column in pairs])
+
+
 def _basis(uniform: tuple[bool, ...]) -> Any:
     ot = openturns()
     factors = [ot.LegendreFactory() if flat else ot.HermiteFactory() for flat in uniform]
@@ -341,11 +347,10 @@ class Predictor:
 
     def _prepared(self, part: int) -> Predict:
         """Return the prediction from all rows (-1), or from those of all parts but one."""
-        of = self.regression
-        fit, kept = (
-            (of.fit, self._parts >= 0) if part < 0 else (of.folds[part], self._parts != part)
-        )
-        return _KINDS[of.kind][1](fit, self._z[kept], self._y[kept], self._uniform)
+        kept = self._parts != part
+        fit = self.regression.fit if part < 0 else self.regression.folds[part]
+        prediction = _KINDS[self.regression.kind][1]
+        return prediction(fit, self._z[kept], self._y[kept], self._uniform)
 
     def __call__(self, z: Floats) -> tuple[Floats, Floats]:
         """Return means, and standard deviations up to a factor, shape (n,) each."""
@@ -386,7 +391,7 @@ def regress(
     """
     mean, sd = float(y.mean()), float(y.std())
     t = (y - mean) / sd
-    candidates = list[tuple[float, Regression]]()
+    candidates = list[Regression]()
     for kind in kinds if len(t) <= MOST_OF_PROCESS else (CHAOS,):
         fit, prediction = _KINDS[kind]
         folds, errors = list[dict[str, Any]](), np.zeros(len(t))
@@ -399,7 +404,6 @@ def regress(
                 predicted, deviations[these] = predict(z[these])
                 errors[these] = t[these] - predicted
         crossed = folds, errors.tolist(), deviations.tolist()
-        regression = Regression(kind, rows.tolist(), t.tolist(), mean, sd, {}, *crossed)
-        candidates.append((regression.q2, regression))
-    best = max(candidates, key=lambda candidate: candidate[0])[1]
+        candidates.append(Regression(kind, rows.tolist(), t.tolist(), mean, sd, {}, *crossed))
+    best = max(candidates, key=lambda regression: regression.q2)
     return best._replace(fit=_KINDS[best.kind][0](z, t, uniform))
