@@ -68,7 +68,7 @@ def hold(i, life, out, now, grown, period, nearing, regime, accuracy, largest, s
     divisible = planned > 1.5 * SMALLEST_STEP * scale(i, life, out) and not was_last(
         i, life, out, now, grown
     )
-    if error > _TIGHT * accuracy and divisible and settled:
+    if error > _TIGHT * accuracy and divisible:
         life.mode[i] = STEPPING
         if smooth:
             life.step[i] /= 2
