@@ -8,7 +8,7 @@ NOTEBOOK := .venv/.installed-notebook
 DOCS := .venv/.installed-docs
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults figures notebook notebooks docs bench coverage clean
+.PHONY: run test slow faults figures notebook notebooks docs bench bench-quick coverage clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -72,6 +72,10 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.scaling
 	@$(BIN)/python -m benchmarks.cluster
 	@$(BIN)/python -m benchmarks.table
+
+# What has become slower by more than a tenth on this kind of processor, in less than 90 seconds.
+bench-quick: $(BASE)
+	@$(BIN)/python -m benchmarks.quick
 
 # Coverage of every reported interval: writes docs/coverage.md, in about an hour and a half.
 coverage: $(TEST)

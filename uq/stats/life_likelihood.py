@@ -22,6 +22,7 @@ LogFunction = Callable[[Floats, Floats], Floats]
 """Function of times over the scale, shape (n,), and of the transformed other parameters."""
 
 _FARTHEST = 12.0  # from the maximum to an end of an interval, on a logarithmic scale
+_SHORTEST = 1e-3  # step of a logarithm towards the end of an interval
 _STEEPEST = 6.0  # logarithm of a shape, beyond which a law is a step
 _WORST = 1e100
 
@@ -591,8 +592,9 @@ def _profile(
                 return nan
             height = root(at)
             if height < critical:
-                ratio = (critical - height) / max(height - at_inner, 1e-3)
-                step = min(max(1.1 * step * ratio, 0.3 * step), 4 * step)
+                # Never so short that a profile which levels off below the limit is not passed.
+                ratio = (critical - height) / max(height - at_inner, 1e-6)
+                step = max(min(max(1.1 * step * ratio, 0.3 * step), 4 * step), _SHORTEST)
                 inner, at_inner = at, height
             else:
                 outer, at_outer = at, height

@@ -192,3 +192,17 @@ def test_an_interval_contains_what_a_threshold_of_zero_allows():
     # Where the law without threshold has the largest likelihood, the ends are nearly its own.
     assert low == pytest.approx(two.quantiles["B10"].low, rel=3e-3)
     assert three.parameters["shape"].low > 1  # below, the likelihood is unbounded
+
+
+def test_a_profile_that_levels_off_just_below_the_limit_has_an_open_end():
+    """The search for its end went on for ever, in ever shorter steps."""
+    rng = np.random.default_rng(99)
+    life = stats.weibull_min(2.0, loc=0.5).rvs(1200, random_state=rng)[:60]
+    visits = np.concatenate([[0.0], np.arange(0.2, 3.0, 0.2), [np.inf]])
+    before = (visits[:, None] < life).sum(axis=0) - 1
+    threshold = fit_law("weibull-3", lives(visits[before], visits[before + 1]), {}).parameters[
+        "threshold"
+    ]
+    assert np.isnan(threshold.low)
+    assert threshold.value == pytest.approx(0.5526, abs=1e-3)
+    assert threshold.high == pytest.approx(0.7235, abs=1e-3)
