@@ -65,6 +65,7 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam_mesh
 	@$(BIN)/python -m benchmarks.vibrator
 	@$(BIN)/python -m benchmarks.mole
+	@$(BIN)/python -m benchmarks.ports
 	@$(BIN)/python -m benchmarks.outside
 	@$(BIN)/python -m benchmarks.store
 	@$(BIN)/python -m benchmarks.large
