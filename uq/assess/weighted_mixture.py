@@ -252,9 +252,10 @@ class WeightedMixture(Sample):
 
         @cache  # both ends of an interval are sought from the same places
         def share(y: float) -> Estimate:
-            return weighted_share(
+            estimate = weighted_share(
                 self.element.below(y, signed=True)[kept], weights, dependence, hits, self.confidence
             )
+            return self._cautious(estimate, lambda plain: plain.below(y, signed=True), kept)
 
         return share, fewest_rows(hits)
 
