@@ -498,8 +498,11 @@ def _of_quantile(likelihood: _Likelihood, p: float) -> tuple[int, _Constraint]:
     def build(value: float, theta: Floats) -> Floats:
         others = theta[1:]
         beyond = value / likelihood.unit - likelihood.threshold(others)
-        standard = likelihood.law.quantile(p, others)
-        scale = log(beyond / standard) if beyond > 0 and standard > 0 else -nan
+        try:
+            standard = likelihood.law.quantile(p, others)
+        except OverflowError:  # a search tries parameters far from all data
+            standard = nan
+        scale = log(beyond / standard) if beyond > 0 and standard > 0 else nan
         return np.concatenate([[scale], others])
 
     return 0, build
