@@ -1,6 +1,8 @@
 """The page on performance, and the figures of the README, are those that the benchmarks kept."""
 
-from benchmarks import figures, table
+import numpy as np
+
+from benchmarks import figures, ports, quick, table
 from benchmarks.figures import Figure
 
 KEPT = {
@@ -41,3 +43,21 @@ def test_every_benchmark_with_figures_belongs_to_make_bench():
     assert len(using) > 5
     for name in {*using, "table"} - {"figures"}:
         assert f"benchmarks.{name}\n" in bench
+
+
+def test_what_takes_longer_than_what_was_kept_is_named(capsys):
+    kept = {"lives": 10.0, "rates": 10.0, "gone": 1.0}
+    slower = quick.report({"lives": 10.9, "rates": 11.2, "new": 5.0}, kept)
+    assert slower == ["rates"]
+    assert "+12%" in capsys.readouterr().out
+
+
+def test_operations_are_counted_by_kind_of_unit():
+    w = ports.Memory(np.array([2.0, 3.0, 0.0]))
+    ports.Number.done.clear()
+    x, y = w[0], w[1]
+    w[2] = ports.counted_fma(x, y, 1.0) / (x - y if x < y else 1.0)
+    assert w.array[2] == -7.0
+    assert ports.Number.done == {"loads": 2, "stores": 1, "fused": 1, "sums": 2, "quotients": 1}
+    limit = ports.limits({"fused": 24, "sums": 8, "loads": 16}, ports.PROCESSORS["Intel"])
+    assert limit == {"fused": 2.0, "loads": 1.0}
