@@ -206,3 +206,13 @@ def test_a_profile_that_levels_off_just_below_the_limit_has_an_open_end():
     assert np.isnan(threshold.low)
     assert threshold.value == pytest.approx(0.5526, abs=1e-3)
     assert threshold.high == pytest.approx(0.7235, abs=1e-3)
+
+
+def test_a_search_far_from_all_data_ends_with_an_interval():
+    """A trial shape whose quantile no float holds ended the fit with a traceback."""
+    rng = np.random.default_rng(250)
+    life = stats.weibull_min(2.0, loc=0.5).rvs(1200, random_state=rng)[:60]
+    end = rng.uniform(0.2, 2.5, 60)
+    data = lives(np.minimum(life, end), np.where(life <= end, life, np.inf))
+    median = fit_law("weibull-3", data, {"B50": 0.5}).quantiles["B50"]
+    assert median.low < 0.5 + np.log(2) ** 0.5 < median.high
