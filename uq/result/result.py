@@ -66,6 +66,7 @@ class Result:
 
     def __init__(self, dataset: xr.Dataset):
         self.dataset = dataset
+        self._input_units: dict[str, ReadableUnit] = {}
 
     @classmethod
     def of(cls, source: "AnyResult") -> "Result":
@@ -263,8 +264,11 @@ class Result:
 
     def input_unit(self, name: str) -> ReadableUnit:
         """Return the unit in which an input is read, in all sentences, tables and figures."""
-        variable = self.dataset[name]
-        return unit_of(str(variable.attrs["units"]), typical(variable.values.ravel()))
+        if name not in self._input_units:
+            variable = self.dataset[name]
+            size = typical(variable.values.ravel())
+            self._input_units[name] = unit_of(str(variable.attrs["units"]), size)
+        return self._input_units[name]
 
     # Rows: outcome, dependence and weights
 
