@@ -113,6 +113,7 @@ def test_heavy_modules_stay_unloaded(program):
 
 DEAR = {
     *("SALib", "dask", "distributed", "jinja2", "matplotlib", "netCDF4", "numba", "pandas"),
+    *("numpy.f2py.f2py2e", "numpy.testing._private.utils"),
     *("scipy.linalg", "scipy.optimize", "scipy.stats", "sympy", "xarray"),
 }
 READING = {"netCDF4", "pandas", "xarray"}

@@ -218,7 +218,7 @@ def summarise(
     rows = result.independent
     of_all = rows.weights if weighting is None else weighting.all_inputs
     context = Context(rows, analysis, of_all)
-    other = None if beside is None else (Context(rows, beside[0], of_all), beside[1])
+    other = None if beside is None else (replace(context, analysis=beside[0]), beside[1])
     outputs, others, most = dict[str, Described](), dict[str, Described](), 0
     plain = plain or regime is not None  # within a regime, inputs have another law
     names = result.shown_outputs(analysis)

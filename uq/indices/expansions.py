@@ -9,6 +9,7 @@ from math import floor
 from typing import Any
 
 import numpy as np
+import scipy
 from scipy.special import ndtr
 
 from uq.contract import Floats
@@ -346,12 +347,22 @@ def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
 def _hdmr() -> Any:
     """Return a copy of SALib's module that keeps what follows from the inputs alone.
 
-    Its basis and the decompositions of its matrices are the same for every output.
+    Its basis and the decompositions of its matrices are the same for every output. It does without
+    its test of each term, which nothing reads here, and so without ``scipy.stats``, whose import
+    takes as long as the expansion.
     """
     spec = find_spec("SALib.analyze.enhanced_hdmr")
     assert spec is not None and spec.loader is not None, "SALib is installed"
     module: Any = module_from_spec(spec)
-    spec.loader.exec_module(module)
+    unused = "stats" not in vars(scipy)
+    if unused:
+        vars(scipy)["stats"] = None
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        if unused:
+            del vars(scipy)["stats"]
+    module._f_test = lambda *_: 0.0
     for name in ("pinv", "matrix_rank", "svd"):
         setattr(module, name, _kept(getattr(module, name)))
     module._basis_matrix = _kept_basis(module._basis_matrix)

@@ -233,7 +233,7 @@ class Result:
 
     def elements(self, outputs: Sequence[str], every: bool = False) -> Iterator[Element]:
         """Yield the elements of outputs (`uq.result.elements.elements_of`)."""
-        return elements_of(self.dataset, outputs, every)
+        return elements_of(self.dataset, outputs, every, self.outputs, self.failed)
 
     def named_elements(self, name: str) -> list[Element]:
         """Return the elements that a name refers to (`uq.result.elements.named_elements`)."""
