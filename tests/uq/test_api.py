@@ -147,7 +147,7 @@ uncertain.depth = {distribution = "normal", mean = 2.5e-4, sd = 1e-5}
         pytest.param("simulate vibrator", {"numba"}, marks=pytest.mark.slow),
         ("summary small.nc,sensitivity small.nc", READING),
         ("summary wear.nc,sensitivity wear.nc", READING),
-        ("run wear.toml -o other.nc --workers 0", READING | {"dask", "jinja2"}),
+        ("run wear.toml -o other.nc --workers 0", READING),
     ],
     ids=["simulate", "beam", "mole", "vibrator", "summary and sensitivity", "lives", "run"],
 )

@@ -118,6 +118,25 @@ def _load_when_used(*names: str) -> None:
         setattr(sys.modules[package], last, module)
 
 
+def ask_for_plain_arrays() -> None:
+    """Let xarray find, once and for all, that no array is of `_NOT_ASKED`.
+
+    Unlike verbs that only read, the caller runs models and workers, which may import them.
+    """
+    if "xarray" in sys.modules:
+        return
+    absent = [name for name in _NOT_ASKED if name not in sys.modules]
+    sys.modules.update(dict.fromkeys(absent))  # type: ignore[arg-type]  # "not installed"
+    try:
+        import xarray as xr
+
+        xr.Dataset({"number": ("row", [0.0])}).load()
+        xr.DataArray([0.0]).to_numpy()
+    finally:
+        for name in absent:
+            del sys.modules[name]
+
+
 def say_when_interrupted(sentence: str) -> None:
     """Set the sentence that an interrupt prints from now on."""
     global _when_interrupted
