@@ -11,6 +11,7 @@ from uq.assess.fact import Fact, Functions
 from uq.assess.sensitivities import sensitivities
 from uq.assess.statistic import Reader
 from uq.assess.statistics.counts import stated_error
+from uq.assess.statistics.table import STATISTICS
 from uq.assess.summary import Described, summarise
 from uq.assess.targets import split_name
 from uq.errors import InputError
@@ -26,6 +27,9 @@ from uq.text.element_names import is_whole, whole_name
 COLUMNS = ["output", "estimate", "samples", "value", "low", "high", "kind", "input"]
 
 _FEWEST = 16  # samples
+
+_RUNNING = tuple(name for name in STATISTICS if name not in ("b_lives", "causes", "integrated"))
+"""Statistics that are estimated from growing numbers of rows."""
 
 
 def running_estimates(result: AnyResult, output: str | None = None) -> pd.DataFrame:
@@ -207,7 +211,7 @@ def method_shown(result: Result) -> str | None:
 
 def estimates_from(result: Result, targets: list[str]) -> Iterator[RunningEstimate]:
     """Yield the statistics of some rows, and the indices of some targets."""
-    summary = summarise(result)
+    summary = summarise(result, parts=_RUNNING)
     for name, output in summary.outputs.items():
         for statistic in output.statistics:
             if statistic.is_read_by(Reader.RUNNING):

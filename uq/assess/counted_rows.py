@@ -72,7 +72,7 @@ class CountedRows(Sample):
             ends = order_statistics.quantile_interval(
                 values, probability, dependence, self.confidence, ascending
             )
-            return order_statistics.quantile(ascending, probability), ends
+            return order_statistics.quantile(ascending, probability, is_sorted=True), ends
 
         value, early = latest, late = estimate(element.at_least, element.ascending)
         if element.censored.any():

@@ -2,12 +2,13 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats
+from uq.contract import Floats, Mask
 from uq.indices.measures import has_many_equal
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import Estimate
@@ -65,9 +66,76 @@ class Effect:
         return 1 if self.slope.value > 0 else -1
 
 
+class Regressors:
+    """The inputs of rows as regressors of any output; what depends on them is computed once.
+
+    Parameters
+    ----------
+    inputs : dict of str to ndarray, shape (n,)
+
+    Attributes
+    ----------
+    columns : dict of str to ndarray, shape (n,)
+        Inputs that vary, or the logarithms of those that `logarithmic` names.
+    logarithmic : dict of str to bool
+    """
+
+    def __init__(self, inputs: Mapping[str, Floats]):
+        self._inputs = inputs
+        self._pieces: dict[str, tuple[NDArray[np.intp], NDArray[np.intp]]] = {}
+        self.columns, self.logarithmic = dict[str, Floats](), dict[str, bool]()
+        for name, column in inputs.items():
+            if len(column) and np.isfinite(column).all() and not is_constant(column):
+                self.logarithmic[name] = _suits_logarithm(column)
+                self.columns[name] = np.log(column) if self.logarithmic[name] else column
+
+    def of_rows(self, kept: Mask) -> "Regressors":
+        """Return the regressors of some rows."""
+        if kept.all():
+            return self
+        return Regressors({name: column[kept] for name, column in self._inputs.items()})
+
+    @cached_property
+    def sizes(self) -> dict[str, float]:
+        """Standard deviation of each."""
+        return {name: float(column.std()) for name, column in self.columns.items()}
+
+    @cached_property
+    def scaled(self) -> Floats:
+        """A column of ones, then each regressor with mean 0 and standard deviation 1."""
+        x = np.column_stack([(c - c.mean()) / self.sizes[n] for n, c in self.columns.items()])
+        return np.column_stack([np.ones(len(x)), x])
+
+    @cached_property
+    def factors(self) -> tuple[Floats, Floats]:
+        """The orthogonal and the triangular factor of `scaled`."""
+        orthogonal, triangle = np.linalg.qr(self.scaled)
+        return orthogonal, triangle
+
+    @cached_property
+    def spare(self) -> Floats:
+        """1 minus the leverage of each row."""
+        orthogonal, _ = self.factors
+        return np.asarray(1 - np.einsum("ij,ij->i", orthogonal, orthogonal))
+
+    @cached_property
+    def has_many_equal(self) -> dict[str, bool]:
+        """Whether many rows share a value of an input."""
+        return {name: has_many_equal(column) for name, column in self.columns.items()}
+
+    def pieces(self, name: str) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Return the piece of an input that each row is in, and the number of rows in each."""
+        if name not in self._pieces:
+            x = self.scaled[:, 1 + list(self.columns).index(name)]
+            edges = np.quantile(x, np.linspace(0, 1, PIECES + 1)[1:-1])
+            piece = np.searchsorted(edges, x, side="right")
+            self._pieces[name] = piece, np.bincount(piece, minlength=PIECES)
+        return self._pieces[name]
+
+
 def effects(
     values: Floats,
-    inputs: Mapping[str, Floats],
+    inputs: Mapping[str, Floats] | Regressors,
     dependence: Dependence = INDEPENDENT,
     names: Collection[str] | None = None,
 ) -> dict[str, Effect]:
@@ -77,7 +145,7 @@ def effects(
     ----------
     values : ndarray, shape (n,)
         NaN where a row has none.
-    inputs : dict of str to ndarray, shape (n,)
+    inputs : dict of str to ndarray, shape (n,), or Regressors
     dependence : Dependence, optional
     names : collection of str, optional
         The inputs whose effects are returned; by default all.
@@ -99,39 +167,32 @@ def effects(
     """
     kept = np.isfinite(values)
     dependence = dependence[kept]
-    columns, logarithmic = {}, {}
-    for name, column in inputs.items():
-        selected = column[kept]
-        if len(selected) and np.isfinite(selected).all() and not is_constant(selected):
-            logarithmic[name] = _suits_logarithm(selected)
-            columns[name] = np.log(selected) if logarithmic[name] else selected
+    regressors = (inputs if isinstance(inputs, Regressors) else Regressors(inputs)).of_rows(kept)
+    columns = regressors.columns
     y, unit = sized(values[kept])  # squares neither overflow nor vanish
     if not columns or len(y) < ROWS_PER_INPUT * (len(columns) + 1) or is_constant(y):
         return {}
-    sizes = {name: float(column.std()) for name, column in columns.items()}
-    x = np.column_stack([(c - c.mean()) / sizes[name] for name, c in columns.items()])
-    with_mean = np.column_stack([np.ones(len(y)), x])
-    orthogonal, triangle = np.linalg.qr(with_mean)
+    orthogonal, triangle = regressors.factors
     if np.abs(np.diag(triangle)).min() < 1e-6 * len(y) ** 0.5:  # one input repeats others
         return {}
     inverse = np.linalg.inv(triangle)
     slopes = inverse @ (orthogonal.T @ y)
-    residual = y - with_mean @ slopes
-    spare = 1 - np.einsum("ij,ij->i", orthogonal, orthogonal)
-    influence = len(y) * (orthogonal * (residual / np.maximum(spare, 1e-9))[:, None]) @ inverse.T
+    residual = y - regressors.scaled @ slopes
+    weighted = orthogonal * (residual / np.maximum(regressors.spare, 1e-9))[:, None]
+    influence = len(y) * weighted @ inverse.T
     by_input = {}
     for i, name in enumerate(columns):
         if names is not None and name not in names:
             continue
         slope = float(slopes[i + 1])
         low, high = _interval(slope, slope + influence[:, i + 1], dependence)
-        size = sizes[name]
+        size = regressors.sizes[name]
         value, low, high = (unit * float(number) / size for number in (slope, low, high))
         of_input = Estimate(value, low, high)
-        turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), dependence)
-        by_input[name] = Effect(
-            of_input, logarithmic[name], sizes[name], turns, has_many_equal(columns[name])
-        )
+        partial = residual + slope * regressors.scaled[:, i + 1]
+        turns = _turns(partial, *regressors.pieces(name), np.sign(slope), dependence)
+        logarithmic, equal = regressors.logarithmic[name], regressors.has_many_equal[name]
+        by_input[name] = Effect(of_input, logarithmic, size, turns, equal)
     return by_input
 
 
@@ -143,15 +204,18 @@ def _suits_logarithm(column: Floats) -> bool:
     return bool(abs((away**3).mean()) < _SKEWED)
 
 
-def _turns(partial: Floats, x: Floats, sign: float, dependence: Dependence) -> bool:
+def _turns(
+    partial: Floats,
+    piece: NDArray[np.intp],
+    counts: NDArray[np.intp],
+    sign: float,
+    dependence: Dependence,
+) -> bool:
     """Return whether a partial effect steps against its slope between adjacent fifths."""
-    edges = np.quantile(x, np.linspace(0, 1, PIECES + 1)[1:-1])
-    piece = np.searchsorted(edges, x, side="right")
-    counts = np.bincount(piece, minlength=PIECES)
     if counts.min() < ROWS_PER_INPUT:
         return False
     means = np.bincount(piece, partial, PIECES) / counts
-    around = (partial - means[piece]) * len(x) / counts[piece]
+    around = (partial - means[piece]) * len(partial) / counts[piece]
     for first in range(PIECES - 1):
         step = means[first + 1] - means[first]
         side = np.where(piece == first + 1, 1.0, np.where(piece == first, -1.0, 0.0))

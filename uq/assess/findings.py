@@ -1,22 +1,24 @@
 """Findings: everything that tables and figures show of a result, each computed once."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
 from uq.assess.components_by_level import ByLevel, by_level
+from uq.assess.effects import Regressors
 from uq.assess.fleet import Fleet, fleet_of
 from uq.assess.regimes import boundary
 from uq.assess.row_inputs import independent_inputs
 from uq.assess.sensitivities import Sensitivities, TargetIndices, sensitivities
 from uq.assess.statistic import Statistic
-from uq.assess.summary import Summary, summarise
+from uq.assess.summary import Described, Summary, summarise
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.result.element import Element
 from uq.result.result import Result
 from uq.stats.order_statistics import mid_ranks
+from uq.study.file import AnalysisTable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,9 +63,23 @@ class Findings:
         return {name: mid_ranks(column) for name, column in independent_inputs(self.rows).items()}
 
     @cached_property
+    def regressors(self) -> Regressors:
+        """The inputs of the independent rows, as regressors of any output."""
+        return Regressors(independent_inputs(self.rows))
+
+    @cached_property
     def summary(self) -> Summary:
         """The summary (`uq.assess.summary.summarise`)."""
         return summarise(self.result)
+
+    def beside(self, analysis: AnalysisTable, parts: Collection[str]) -> Mapping[str, Described]:
+        """Return other statistics of the outputs, computed with the summary if it is not yet."""
+        if not parts:
+            return {}
+        if "summary" in self.__dict__:
+            return summarise(self.result, analysis, parts=parts).outputs
+        self.summary = summarise(self.result, beside=(analysis, parts))
+        return self.summary.beside
 
     @cached_property
     def boundary(self) -> Statistic | None:

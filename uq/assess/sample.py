@@ -211,8 +211,9 @@ class Sample(ABC):
             return {}
         element, failed = self.element, int(self.element.failed.sum())
         asked = failed, coverage, confidence
-        early = order_statistics.tolerance_bounds(element.at_least, *asked)
-        late = order_statistics.tolerance_bounds(element.at_most, *asked)
+        early = late = order_statistics.tolerance_bounds(element.ascending, *asked, is_sorted=True)
+        if element.censored.any():
+            late = order_statistics.tolerance_bounds(element.at_most, *asked)
         bounds = {
             "lower": whenever_censored_rows_end((early[0], early[0])),
             "upper": whenever_censored_rows_end((early[1], late[1])),

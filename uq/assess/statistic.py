@@ -42,11 +42,15 @@ class Context:
         What the study asks for.
     weights : ImportanceWeights, optional
         Of the rows with nothing integrated, where they stand for another study.
+    samples : dict of int to Sample
+        The sample of the element that is described, by the identity of the element. All statistics
+        share it, as it keeps what it has computed.
     """
 
     rows: Result
     analysis: AnalysisTable
     weights: ImportanceWeights | None = None
+    samples: dict[int, Sample] = field(default_factory=dict, compare=False, repr=False)
 
     @cached_property
     def joint_bounds(self) -> list[JointBound]:
@@ -55,7 +59,12 @@ class Context:
 
     def sample(self, element: Element) -> Sample:
         """Return the rows of an element as a sample."""
-        return as_sample(element, self.rows.dependence, weights=self.weights)
+        sample = self.samples.get(id(element))
+        if sample is None:
+            self.samples.clear()  # one element at a time in memory
+            sample = as_sample(element, self.rows.dependence, weights=self.weights)
+            self.samples[id(element)] = sample
+        return sample
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from uq.result.weights import ONLY_INSPECTED
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import ImportanceWeights
 from uq.stats.intervals import share_interval
+from uq.stats.order_statistics import finite_part
 from uq.stats.weighted_means import weighted_share
 from uq.study.file import AnalysisTable
 from uq.text.units import ReadableUnit, typical, unit_of
@@ -69,12 +70,18 @@ class Described:
     units : str
     parts : dict of str to tuple of Statistic
         Name in `uq.assess.statistics.table.STATISTICS` -> its statistics, in that order.
+    middle : tuple of float, optional
+        The 5 %, 50 % and 95 % order statistics of its finite values; empty without one.
+    recurs : bool
+        Whether rows have equal values.
     fits : dict of str to Fit, optional
         Law -> its fit or refusal.
     """
 
     units: str
     parts: Mapping[str, tuple[Statistic, ...]]
+    middle: tuple[float, ...] = ()
+    recurs: bool = False
     fits: Mapping[str, Fit] = field(default_factory=dict)
 
     @property
@@ -124,6 +131,8 @@ class Summary:
         Why a run with `until` ended, in a few words; "" for others.
     weights : ImportanceWeights, optional
         Of the rows, where inspections have weighted them.
+    beside : dict of str to Described
+        By name of the element, what was asked for beside.
     """
 
     result: Result
@@ -135,6 +144,7 @@ class Summary:
     notes: list[str]
     why_ended: str = ""
     weights: ImportanceWeights | None = None
+    beside: Mapping[str, Described] = field(default_factory=dict)
 
     @property
     def samples(self) -> int:
@@ -172,6 +182,7 @@ def summarise(
     plain: bool = False,
     weighting: Weighting | None = None,
     parts: Collection[str] = STATISTICS,
+    beside: tuple[AnalysisTable, Collection[str]] | None = None,
 ) -> Summary:
     """Describe a result.
 
@@ -191,6 +202,8 @@ def summarise(
         Makes the rows those of another study; none within a regime.
     parts : collection of str
         Names in `STATISTICS` of the statistics to compute.
+    beside : tuple of AnalysisTable and collection of str, optional
+        Other statistics to report of the same outputs, and the names of those to compute.
 
     Returns
     -------
@@ -205,7 +218,8 @@ def summarise(
     rows = result.independent
     of_all = rows.weights if weighting is None else weighting.all_inputs
     context = Context(rows, analysis, of_all)
-    outputs, most = dict[str, Described](), 0
+    other = None if beside is None else (replace(context, analysis=beside[0]), beside[1])
+    outputs, others, most = dict[str, Described](), dict[str, Described](), 0
     plain = plain or regime is not None  # within a regime, inputs have another law
     names = result.shown_outputs(analysis)
     elements = (
@@ -213,6 +227,8 @@ def summarise(
     )
     for element in elements:  # one at a time in memory
         outputs[element.name] = _described(element, context, fits, parts)
+        if other is not None:
+            others[element.name] = _described(element, other[0], False, other[1])
         most = max(most, int(element.failed.sum()))
     if most:
         notes.append(SOME_FAILED.format(most=most, rows=len(rows)))
@@ -226,6 +242,7 @@ def summarise(
         notes=notes,
         why_ended=why_ended,
         weights=of_all if weighting is None else None,
+        beside=others,
     )
 
 
@@ -239,7 +256,8 @@ def _described(
         )
         for name in wanted
     }
-    if step := resolution_of(element, _FEWEST_STEPS * 10.0**-_DIGITS):
+    middle = middle_of(element)
+    if step := resolution(middle, _FEWEST_STEPS * 10.0**-_DIGITS):
         for name, statistics in parts.items():
             parts[name] = tuple(
                 replace(statistic, resolution=step)
@@ -250,15 +268,34 @@ def _described(
     fitted = {}
     if fits and element.is_lifetime:
         fitted = fits_of(element, context.rows.dependence.is_none, context.rows.is_field_record)
-    return Described(element.units, parts, fitted)
+    return Described(element.units, parts, middle, _recurs(element), fitted)
 
 
-def resolution_of(element: Element, least: float) -> float:
+def middle_of(element: Element) -> tuple[float, ...]:
+    """Return the 5 %, 50 % and 95 % order statistics of its finite values, if it has any."""
+    values = finite_part(element.ascending)
+    if not len(values):
+        return ()
+    return tuple(values[[int(p * (len(values) - 1)) for p in (0.05, 0.5, 0.95)]].tolist())
+
+
+def _recurs(element: Element) -> bool:
+    """Return whether rows have equal values, of an angle equal magnitudes."""
+    if element.is_angle or element.censored.any():
+        ascending = np.sort(element.for_thresholds[element.present & ~element.censored])
+    else:
+        ascending = element.ascending
+    values = finite_part(ascending)
+    return bool((values[1:] == values[:-1]).any())
+
+
+def resolution(middle: tuple[float, ...], least: float) -> float:
     """Return the difference that digits must show where an output is far from 0 for its scatter.
 
     Parameters
     ----------
-    element : Element
+    middle : tuple of float
+        See `middle_of`.
     least : float
         Range of the middle 90 % over their median from which the usual digits suffice.
 
@@ -267,11 +304,10 @@ def resolution_of(element: Element, least: float) -> float:
     float
         A hundredth of that range; 0 where the usual digits suffice.
     """
-    values = element.ascending[np.isfinite(element.ascending)]
-    if not len(values):
+    if not middle:
         return 0.0
-    low, middle, high = values[[int(p * (len(values) - 1)) for p in (0.05, 0.5, 0.95)]]
-    return float(high - low) / 100 if high - low < least * abs(middle) else 0.0
+    low, median, high = middle
+    return (high - low) / 100 if high - low < least * abs(median) else 0.0
 
 
 def status_counts(result: Result) -> dict[str, int]:

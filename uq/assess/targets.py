@@ -51,8 +51,10 @@ def tail_share(values: Floats) -> float:
     if len(defined) < FEWEST or not np.ptp(defined) > 0:
         return 0.0
     scaled = defined / np.abs(defined).max()  # squares neither overflow nor vanish
-    squares = np.sort((scaled - scaled.mean()) ** 2)
-    return float(squares[-int(np.ceil(LARGEST * len(defined))) :].sum() / squares.sum())
+    squares = (scaled - scaled.mean()) ** 2
+    farthest = int(np.ceil(LARGEST * len(defined)))
+    largest = np.sort(np.partition(squares, len(squares) - farthest)[-farthest:])
+    return float(largest.sum() / squares.sum())
 
 
 def heaviness(values: Floats) -> str:

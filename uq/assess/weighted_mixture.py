@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from math import ceil, exp, inf, isfinite, isnan, log, nan
 
 import numpy as np
@@ -107,6 +107,11 @@ class WeightedMixture(Sample):
 
         Its interval holds all values at which the interval of P(Y < y) holds the probability.
         """
+        if probability not in self._quantiles:
+            self._quantiles[probability] = self._quantile(probability)
+        return self._quantiles[probability]
+
+    def _quantile(self, probability: float) -> Estimate:
         if not self.element.present.any():
             return Estimate()
         search = self._along_time if self.element.law is not None else self._along_values
@@ -114,6 +119,16 @@ class WeightedMixture(Sample):
         if not isfinite(estimate.value):
             return estimate
         return self._trusted(estimate, self.element.present)
+
+    @cached_property
+    def _quantiles(self) -> dict[float, Estimate]:
+        """Quantiles so far: those of the answer are among those of the tables."""
+        return {}
+
+    @cached_property
+    def _averages(self) -> dict[float, float]:
+        """Estimates of P(Y < y) so far: all quantiles are sought from the same places."""
+        return {}
 
     def survival(self, time: Floats) -> Curve:
         """Estimate P(T > t) at times that ascend, with pointwise intervals."""
@@ -147,9 +162,8 @@ class WeightedMixture(Sample):
             return nan
         threshold = self.middle(probability)
         dependence = self.dependence[kept]
-        worth = np.ones(int(kept.sum()))
         integrated, plain = (
-            weighted_part_means(rows.below(threshold)[kept], worth, dependence)
+            weighted_part_means(rows.below(threshold)[kept], None, dependence)
             for rows in (self.element, self.element.plain)
         )
         if len(integrated) < _SHOW_VARIANCE or is_constant(integrated):
@@ -272,10 +286,11 @@ class WeightedMixture(Sample):
         return f"{ends}: {rows:.3g} effective rows, and {needed} are required"
 
     def _average(self, value: float) -> float:
-        kept = self.element.present
-        return float(
-            np.average(self.element.below(value, signed=True)[kept], weights=self._weights(kept))
-        )
+        if value not in self._averages:
+            kept = self.element.present
+            below = self.element.below(value, signed=True)[kept]
+            self._averages[value] = float(np.average(below, weights=self._weights(kept)))
+        return self._averages[value]
 
     def middle(self, probability: float) -> float:
         """Return the estimate of a quantile without its interval."""
@@ -304,7 +319,7 @@ class WeightedMixture(Sample):
         """The time that is not reached: infinite where some lives never end, else unknown."""
         return np.inf if self.element.never.any() else nan
 
-    @property
+    @cached_property
     def _typical(self) -> tuple[float, float] | None:
         """Return the logarithm of a typical life, and the scatter of logarithms."""
         lives = self.element.values[self.element.present]

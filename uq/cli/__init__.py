@@ -30,6 +30,7 @@ import os
 import signal
 import sys
 from functools import partial
+from importlib.util import LazyLoader, find_spec, module_from_spec
 from types import FrameType
 from typing import Any, NoReturn
 
@@ -54,8 +55,13 @@ _READERS = (
     "plot",
     "report",
 )
-"""Verbs that only read results. For each array of one, xarray would import dask to ask whether it
-is one of dask's: here none is."""
+"""Verbs that only read results."""
+
+_NOT_ASKED = ("dask", "pint")
+"""Packages that xarray would import to ask whether an array is one of theirs: here none is."""
+
+_SELDOM_USED = ("numpy.f2py", "numpy.testing")
+"""Modules that ``from numpy import *`` imports, in scipy."""
 
 _HOMES = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME")
 """Folders of a user, ignored where they are relative, as the XDG base directory specification has
@@ -68,7 +74,10 @@ def main() -> NoReturn:
         signal.signal(number, partial(_stop, os.getpid()))
     gc.set_threshold(_ALLOCATIONS)
     if sys.argv[1:2] and sys.argv[1] in _READERS:
-        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]  # "not installed"
+        for name in _NOT_ASKED:
+            sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # "not installed"
+    if len(sys.argv) > 2 and sys.argv[1] in (*_READERS, "run") and "--help" not in sys.argv:
+        _load_when_used(*_SELDOM_USED)
     for name, value in SINGLE_THREADED.items():
         os.environ.setdefault(name, value)
     for name in _HOMES:
@@ -93,6 +102,39 @@ def main() -> NoReturn:
     code = streams.finish(code)
     gc.freeze()  # else Python searches all modules for garbage, three times, before it ends
     sys.exit(code)
+
+
+def _load_when_used(*names: str) -> None:
+    """Let submodules load only when an attribute of theirs is first asked for."""
+    for name in names:
+        if name in sys.modules:
+            continue
+        spec = find_spec(name)
+        assert spec is not None and spec.loader is not None, name
+        spec.loader = LazyLoader(spec.loader)
+        sys.modules[name] = module = module_from_spec(spec)
+        spec.loader.exec_module(module)
+        package, _, last = name.rpartition(".")
+        setattr(sys.modules[package], last, module)
+
+
+def ask_for_plain_arrays() -> None:
+    """Let xarray find, once and for all, that no array is of `_NOT_ASKED`.
+
+    Unlike verbs that only read, the caller runs models and workers, which may import them.
+    """
+    if "xarray" in sys.modules:
+        return
+    absent = [name for name in _NOT_ASKED if name not in sys.modules]
+    sys.modules.update(dict.fromkeys(absent))  # type: ignore[arg-type]  # "not installed"
+    try:
+        import xarray as xr
+
+        xr.Dataset({"number": ("row", [0.0])}).load()
+        xr.DataArray([0.0]).to_numpy()
+    finally:
+        for name in absent:
+            del sys.modules[name]
 
 
 def say_when_interrupted(sentence: str) -> None:

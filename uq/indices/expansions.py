@@ -2,11 +2,14 @@
 
 import warnings
 from collections.abc import Callable, Mapping
+from functools import cache, lru_cache
+from importlib.util import find_spec, module_from_spec
 from itertools import combinations
 from math import floor
 from typing import Any
 
 import numpy as np
+import scipy
 from scipy.special import ndtr
 
 from uq.contract import Floats
@@ -340,13 +343,66 @@ def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
     return allowed, f" ({name} has {fewest} values, which allow no degree above {allowed[-1]})"
 
 
-def _expansion(x: Floats, y: Floats, degree: int) -> Any:
-    from SALib.analyze import enhanced_hdmr
+@cache
+def _hdmr() -> Any:
+    """Return a copy of SALib's module that keeps what follows from the inputs alone.
 
+    Its basis and the decompositions of its matrices are the same for every output. It does without
+    its test of each term, which nothing reads here, and so without ``scipy.stats``, whose import
+    takes as long as the expansion.
+    """
+    spec = find_spec("SALib.analyze.enhanced_hdmr")
+    assert spec is not None and spec.loader is not None, "SALib is installed"
+    module: Any = module_from_spec(spec)
+    unused = "stats" not in vars(scipy)
+    if unused:
+        vars(scipy)["stats"] = None
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        if unused:
+            del vars(scipy)["stats"]
+    module._f_test = lambda *_: 0.0
+    for name in ("pinv", "matrix_rank", "svd"):
+        setattr(module, name, _kept(getattr(module, name)))
+    module._basis_matrix = _kept_basis(module._basis_matrix)
+    return module
+
+
+_MOST_KEPT = 6  # degrees times the halves of the rows and all of them
+
+
+def _kept(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function of a matrix that keeps its last results; none is changed in place."""
+
+    @lru_cache(_MOST_KEPT)
+    def of_bytes(matrix: bytes, shape: tuple[int, ...], **options: Any) -> Any:
+        return function(np.frombuffer(matrix).reshape(shape), **options)
+
+    return lambda matrix, **options: of_bytes(matrix.tobytes(), matrix.shape, **options)
+
+
+def _kept_basis(function: Callable[..., Floats]) -> Callable[..., Floats]:
+    """Return SALib's function of inputs and settings, which keeps its last results."""
+    results: dict[tuple[bytes, int], Floats] = {}
+
+    def basis(x: Floats, settings: Any) -> Floats:
+        key = x.tobytes(), settings.p_o
+        if key not in results:
+            if len(results) >= _MOST_KEPT:
+                results.clear()
+            results[key] = function(x, settings)
+            results[key].flags.writeable = False
+        return results[key]
+
+    return basis
+
+
+def _expansion(x: Floats, y: Floats, degree: int) -> Any:
     names = [str(i) for i in range(x.shape[1])]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the warning that there is no bootstrap
-        return enhanced_hdmr.analyze(
+        return _hdmr().analyze(
             {"num_vars": len(names), "names": names},
             x,
             y,

@@ -12,6 +12,7 @@ computed by OpenTURNS, which is imported on first use.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -193,7 +194,7 @@ def quantile_indices(
                 f"only {len(y)} rows have a value; {name} needs {MIN_SLICES * rows}, {rows} in each"
                 f" of {MIN_SLICES} slices of an input"
             )
-        elif (whole := _least_contrasts(y, (p,))[0]) == 0:
+        elif (whole := float(_least_contrasts(y[None], (p,))[0, 0])) == 0:
             notes.append(f"all values on one side of {name} are equal: no input can move it")
         else:
             cuts = even_cuts(len(y), min(len(y) // rows, MOST_SLICES))
@@ -215,9 +216,11 @@ def without_optimism(raw: Floats, idle: Floats) -> Floats:
 
 
 def _least_contrasts(y: Floats, probabilities: Sequence[float]) -> Floats:
-    quantiles = np.quantile(y, probabilities, method="inverted_cdf")
-    rests = zip((y - quantile for quantile in quantiles), probabilities, strict=True)
-    return np.array([np.mean(rest * (p - (rest < 0))) for rest, p in rests])
+    """Return the minimum contrast of each quantile in each row of y, shape (slices, quantiles)."""
+    ranks = np.quantile(np.arange(y.shape[1]), probabilities, method="inverted_cdf").astype(int)
+    quantiles = np.sort(y, axis=1)[:, ranks].T
+    rests = zip((y - quantile[:, None] for quantile in quantiles), probabilities, strict=True)
+    return np.array([np.mean(rest * (p - (rest < 0)), axis=1) for rest, p in rests]).T
 
 
 def _remains(
@@ -225,25 +228,45 @@ def _remains(
     y: Floats,
     probabilities: Sequence[float],
     cases: Sequence[tuple[NDArray[np.intp], int]],
-) -> list[float]:
+) -> Floats:
     """Return for each quantile the mean of the minimum contrasts over slices of an input."""
-    remains, contrasts = [], dict[int, Floats]()  # of all quantiles, by the slices they share
-    for i, number in enumerate(slices_along(column, cases)):
-        if is_undivided(column, number):
-            remains.append(np.nan)
-            continue
-        if id(number) not in contrasts:
-            parts = _parts(y, number)
-            least = np.array([_least_contrasts(part, probabilities) for part in parts])
-            contrasts[id(number)] = sum(least * np.array([[len(part)] for part in parts])) / len(y)
-        remains.append(float(contrasts[id(number)][i]))
+    remains = np.full(len(probabilities), np.nan)
+    keys = tuple((tuple(cuts.tolist()), least) for cuts, least in cases)
+    for asked, order, counts in _slicings(np.ascontiguousarray(column).tobytes(), keys):
+        wanted = [probabilities[i] for i in asked]
+        sorted_by_slice, ends = y[order], np.cumsum(counts)
+        least = np.empty((len(counts), len(asked)))
+        for count in np.unique(counts):
+            alike = np.flatnonzero(counts == count)
+            rows = (ends[alike] - count)[:, None] + np.arange(count)
+            least[alike] = _least_contrasts(sorted_by_slice[rows], wanted)
+        remains[list(asked)] = sum(least * counts[:, None]) / len(y)
     return remains
 
 
-def _parts(y: Floats, number: NDArray[np.intp]) -> list[Floats]:
-    """Return y of each slice, its rows in their order."""
-    order = np.argsort(number.astype(np.uint16), kind="stable")  # by counting: slices are few
-    return np.split(y[order], np.cumsum(np.bincount(number))[:-1])
+@lru_cache(64)
+def _slicings(
+    column: bytes, cases: tuple[tuple[tuple[int, ...], int], ...]
+) -> list[tuple[tuple[int, ...], NDArray[np.intp], NDArray[np.intp]]]:
+    """Return the distinct slicings along an input, kept for the next output of the same rows.
+
+    Returns
+    -------
+    list of tuple
+        The cases that share a slicing, the rows ordered by slice, and their number in each slice;
+        without cases in which an input varies only within one slice.
+    """
+    values = np.frombuffer(column)
+    arrays = [(np.array(cuts, np.intp), least) for cuts, least in cases]
+    shared: dict[int, tuple[NDArray[np.intp], list[int]]] = {}
+    for i, number in enumerate(slices_along(values, arrays)):
+        if not is_undivided(values, number):
+            shared.setdefault(id(number), (number, []))[1].append(i)
+    return [
+        # by counting, as slices are few; the rows of a slice keep their order
+        (tuple(asked), np.argsort(number.astype(np.uint16), kind="stable"), np.bincount(number))
+        for number, asked in shared.values()
+    ]
 
 
 HSIC = IndexKind("hsic", "HSIC, normalised")

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
+from uq.stats.order_statistics import ascending_order
 
 LEAST_LAGS = 8
 """Minimum number of lags; with fewer, the intercept of a parabola is too noisy."""
@@ -111,7 +112,7 @@ def residual_variance(x: Floats, y: Floats, dependence: Dependence = INDEPENDENT
     .. [2] P. Hall, J. W. Kay, D. M. Titterington, "Asymptotically optimal difference-based
        estimation of variance in nonparametric regression", Biometrika 77, 521-528 (1990).
     """
-    order = np.argsort(x, kind="stable")
+    order = ascending_order(x)
     starts = np.flatnonzero(np.append(True, np.diff(x[order]) != 0))
     counts = np.diff(np.append(starts, len(order)))
     shared = counts >= _FEWEST_EQUAL

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats as Floats
 from uq.contract import Mask as Mask
-from uq.contract import cause_name, censored_name, entered_name, high_name
+from uq.contract import Output, cause_name, censored_name, entered_name, high_name
 from uq.errors import InputError, choices, nearest
 from uq.result.element import Element as Element
 from uq.result.element import elements_in, places
@@ -179,20 +179,26 @@ def _no_such_element(name: str, names: Collection[str]) -> InputError:
     return InputError(f"no such element '{name}'{nearest(name, names)} (allowed: {choices(names)})")
 
 
-def thinned_outputs(ds: xr.Dataset) -> dict[str, int]:
+def thinned_outputs(ds: xr.Dataset, declared: Mapping[str, Output] | None = None) -> dict[str, int]:
     """Return the number of elements of each output that is described at selected elements only.
 
-    These outputs have more than `MOST_PLACES` elements, and the study does not name them.
+    These outputs have more than `MOST_PLACES` elements, and the study does not name them. Outputs
+    as `declared`, where that is known.
     """
-    sizes = {
-        name: prod(ds.sizes[dim] for dim in output.dims) for name, output in outputs_of(ds).items()
-    }
+    declared = outputs_of(ds) if declared is None else declared
+    sizes = {name: prod(ds.sizes[dim] for dim in output.dims) for name, output in declared.items()}
     huge = {name: size for name, size in sizes.items() if size > MOST_PLACES}
     named = study_of_result(ds.attrs["study"]).analysis.outputs if huge else ()
     return {name: size for name, size in huge.items() if name not in named}
 
 
-def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> Iterator[Element]:
+def elements_of(
+    ds: xr.Dataset,
+    outputs: Sequence[str],
+    every: bool = False,
+    declared: Mapping[str, Output] | None = None,
+    lost: Mask | None = None,
+) -> Iterator[Element]:
     """Yield the elements of outputs in order, skipping categories.
 
     Parameters
@@ -203,6 +209,10 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> 
         Names of outputs.
     every : bool
         Whether to yield all elements of `thinned_outputs`, too.
+    declared : dict of str to Output, optional
+        The outputs of the result, where they are already read.
+    lost : ndarray of bool, shape (n,), optional
+        The failed rows, where they are already known.
 
     Yields
     ------
@@ -213,17 +223,23 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str], every: bool = False) -> 
     InputError
         When the result has no such output.
     """
-    thinned = () if every else thinned_outputs(ds)
+    declared = outputs_of(ds) if declared is None else declared
+    thinned = () if every else thinned_outputs(ds, declared)
     for output in outputs:
         most = MOST_PLACES if output in thinned else inf
-        yield from _elements_at(ds, output, partial(places, output, most=most))
+        where = partial(places, output, most=most)
+        yield from _elements_at(ds, output, where, declared, lost)
 
 
 def _elements_at(
-    ds: xr.Dataset, output: str, where: Callable[[Mapping[str, Any]], Iterable[Place]]
+    ds: xr.Dataset,
+    output: str,
+    where: Callable[[Mapping[str, Any]], Iterable[Place]],
+    outputs: Mapping[str, Output],
+    lost: Mask | None = None,
 ) -> Iterator[Element]:
     """Yield elements of an output, unless it is a category; `where` selects coordinates."""
-    outputs, flag = outputs_of(ds), censored_name(output)
+    flag = censored_name(output)
     if output not in outputs:
         raise InputError(
             f"no such output '{output}'{nearest(output, outputs)} (allowed: {choices(outputs)})"
@@ -232,7 +248,8 @@ def _elements_at(
     if not declared.is_category:
         axes = {dim: ds[dim].values for dim in declared.dims}
         censored = ds.variables[flag] if flag in ds else None
-        rows = failed(ds), row_weights(ds), largest_weight(ds)
+        lost = failed(ds) if lost is None else lost
+        rows = lost, row_weights(ds), largest_weight(ds)
         values = ds.variables[output]
         beside = {
             key: ds.variables[name]
@@ -270,7 +287,9 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     """
     output = name.partition("[")[0]
     whole = name == output or is_whole(name)
-    matches = [] if whole else list(_elements_at(ds, output, partial(place_of, name)))
+    matches = (
+        [] if whole else list(_elements_at(ds, output, partial(place_of, name), outputs_of(ds)))
+    )
     if matches:
         return matches
     elements = list(elements_of(ds, [output], every=True))

@@ -66,6 +66,7 @@ class Result:
 
     def __init__(self, dataset: xr.Dataset):
         self.dataset = dataset
+        self._input_units: dict[str, ReadableUnit] = {}
 
     @classmethod
     def of(cls, source: "AnyResult") -> "Result":
@@ -232,7 +233,7 @@ class Result:
 
     def elements(self, outputs: Sequence[str], every: bool = False) -> Iterator[Element]:
         """Yield the elements of outputs (`uq.result.elements.elements_of`)."""
-        return elements_of(self.dataset, outputs, every)
+        return elements_of(self.dataset, outputs, every, self.outputs, self.failed)
 
     def named_elements(self, name: str) -> list[Element]:
         """Return the elements that a name refers to (`uq.result.elements.named_elements`)."""
@@ -263,8 +264,11 @@ class Result:
 
     def input_unit(self, name: str) -> ReadableUnit:
         """Return the unit in which an input is read, in all sentences, tables and figures."""
-        variable = self.dataset[name]
-        return unit_of(str(variable.attrs["units"]), typical(variable.values.ravel()))
+        if name not in self._input_units:
+            variable = self.dataset[name]
+            size = typical(variable.values.ravel())
+            self._input_units[name] = unit_of(str(variable.attrs["units"]), size)
+        return self._input_units[name]
 
     # Rows: outcome, dependence and weights
 

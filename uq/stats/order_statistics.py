@@ -1,8 +1,10 @@
 """Sample quantiles, their confidence intervals, and tolerance bounds, from order statistics."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uq.contract import Floats
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
@@ -33,7 +35,7 @@ def rows_to_reach(probability: float) -> int:
     return next(n for n in (rows - 1, rows, rows + 1) if n > 0 and is_within(probability, n))
 
 
-def quantile(values: Floats, probability: float) -> float:
+def quantile(values: Floats, probability: float, is_sorted: bool = False) -> float:
     """Return the median-unbiased estimate of a quantile (type 8 of [1]_).
 
     Parameters
@@ -41,6 +43,8 @@ def quantile(values: Floats, probability: float) -> float:
     values : ndarray, shape (n,)
         Finite or infinite.
     probability : float
+    is_sorted : bool, optional
+        Whether the values ascend, so that no search through them is needed.
 
     Returns
     -------
@@ -56,6 +60,8 @@ def quantile(values: Floats, probability: float) -> float:
     if not is_within(probability, len(values)):
         return np.nan
     huge = np.finfo(float).max / 4
+    if is_sorted and -huge < values[0] and values[-1] < huge:
+        return _between_neighbours(values, probability)
     if -huge < values.min() and values.max() < huge:
         return float(np.quantile(values, probability, method="median_unbiased"))
     # Infinity times zero is NaN: numpy interpolates towards a huge number instead.
@@ -64,6 +70,16 @@ def quantile(values: Floats, probability: float) -> float:
     if estimate > finite.max(initial=-huge):
         return np.inf
     return float(estimate) if estimate >= finite.min(initial=huge) else -np.inf
+
+
+def _between_neighbours(ascending: Floats, probability: float) -> float:
+    """Return what `numpy.quantile` does of sorted values, to the bit."""
+    n, third = len(ascending), 1 / 3.0
+    place = n * probability + (third + probability * (1 - third - third)) - 1
+    first = min(max(int(np.floor(place)), 0), n - 1)
+    low, high = float(ascending[first]), float(ascending[min(first + 1, n - 1)])
+    share = place - np.floor(place)
+    return high - (high - low) * (1 - share) if share >= 0.5 else low + (high - low) * share
 
 
 def quantile_interval(
@@ -103,12 +119,13 @@ def quantile_interval(
         return UNKNOWN
     if dependence.is_none:
         tail = 1 - upper_probability(confidence)
+        ordered, is_sorted = (values, False) if ascending is None else (ascending, True)
         return (
-            order_statistic(values, binomial(tail, n, probability)),
-            order_statistic(values, binomial_exceeded(tail, n, probability) + 1),
+            order_statistic(ordered, binomial(tail, n, probability), is_sorted),
+            order_statistic(ordered, binomial_exceeded(tail, n, probability) + 1, is_sorted),
         )
     ascending = np.sort(values) if ascending is None else ascending
-    value = quantile(ascending, probability)
+    value = quantile(ascending, probability, is_sorted=True)
     if np.isnan(value):
         return UNKNOWN
     below = values < value if np.isposinf(value) else values <= value
@@ -122,19 +139,29 @@ def quantile_interval(
         samples=samples,
     )
     return (
-        quantile(ascending, low) if low * n >= 1 else np.nan,
-        quantile(ascending, high) if (1 - high) * n >= 1 else np.nan,
+        quantile(ascending, low, is_sorted=True) if low * n >= 1 else np.nan,
+        quantile(ascending, high, is_sorted=True) if (1 - high) * n >= 1 else np.nan,
     )
 
 
-def order_statistic(values: Floats, rank: int) -> float:
+def finite_part(ascending: Floats) -> Floats:
+    """Return the finite ones of sorted values, none of which is NaN."""
+    first = np.searchsorted(ascending, -np.inf, side="right")
+    return ascending[first : np.searchsorted(ascending, np.inf)]
+
+
+def order_statistic(values: Floats, rank: int, is_sorted: bool = False) -> float:
     """Return the order statistic of this rank, 1 to n; NaN outside this range."""
     if not 1 <= rank <= len(values):
         return np.nan
+    if is_sorted:
+        return float(values[rank - 1])
     return float(np.partition(values, rank - 1)[rank - 1])
 
 
-def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: float) -> Ends:
+def tolerance_bounds(
+    values: Floats, failed: int, coverage: float, confidence: float, is_sorted: bool = False
+) -> Ends:
     """Return two one-sided tolerance bounds from independent rows (Wilks 1941).
 
     Parameters
@@ -147,6 +174,8 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
         Share of all values within each one-sided bound.
     confidence : float
         Probability of at least this coverage; 0.95 and 0.95 give the 95/95 bounds.
+    is_sorted : bool, optional
+        Whether the values ascend.
 
     Returns
     -------
@@ -162,7 +191,9 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     if n + failed == 0:
         return np.nan, np.nan
     outside = binomial(1 - confidence, n + failed, 1 - coverage) - failed
-    return order_statistic(values, outside), order_statistic(values, n + 1 - outside)
+    ranks = outside, n + 1 - outside
+    low, high = (order_statistic(values, rank, is_sorted) for rank in ranks)
+    return low, high
 
 
 def joint_bounds(
@@ -249,6 +280,26 @@ def rows_still_needed(
     if rows and failed >= (1 - coverage) * rows:
         return np.inf
     return rows_for_bound(coverage, confidence, failed, bounds)
+
+
+_LARGEST_KEPT = 2**20  # bytes of a column whose order is kept
+
+
+def ascending_order(column: Floats) -> NDArray[np.intp]:
+    """Return the rows in the order of a column, equal values in theirs.
+
+    The orders of short columns are kept: the same inputs are sorted for each output.
+    """
+    if column.nbytes > _LARGEST_KEPT or column.dtype != float:
+        return np.argsort(column, kind="stable")
+    return _kept_order(column.tobytes())
+
+
+@lru_cache(64)
+def _kept_order(column: bytes) -> NDArray[np.intp]:
+    order = np.argsort(np.frombuffer(column), kind="stable")
+    order.flags.writeable = False
+    return order
 
 
 def mid_ranks(values: Floats) -> Floats:

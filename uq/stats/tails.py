@@ -117,8 +117,8 @@ def heavier_tail(values: Floats) -> Tail | None:
     size = min(int(LARGEST_SHARE * len(values)), MAX_TAIL)
     if size < MIN_TAIL:
         return None
-    upper = np.sort(np.partition(values, -size - 1)[-size - 1 :])
-    lower = np.sort(-np.partition(values, size)[: size + 1])
+    parted = np.partition(values, (size, len(values) - size - 1))
+    upper, lower = np.sort(parted[-size - 1 :]), np.sort(-parted[: size + 1])
     tails = [
         tail
         for side, extreme in (("upper", upper), ("lower", lower))

@@ -114,15 +114,15 @@ def widened_to_binomial(
 EXACT = "exact: rows differ only in integrated inputs"
 
 
-def weighted_part_means(numbers: Floats, weights: Floats, dependence: Dependence) -> Floats:
+def weighted_part_means(numbers: Floats, weights: Floats | None, dependence: Dependence) -> Floats:
     """Return the linearised weighted mean of each independent part, shape (parts,).
 
-    This is the mean of all rows plus the influence of the part on it. If the law of an input was
-    estimated from all rows, the influence on this law is included
-    (`uq.stats.dependent_rows.SharedInfluence`).
+    Without weights all rows count alike. This is the mean of all rows plus the influence of the
+    part on it. If the law of an input was estimated from all rows, the influence on this law is
+    included (`uq.stats.dependent_rows.SharedInfluence`).
     """
     mean = np.average(numbers, weights=weights)
-    influence = _influence(numbers, weights)
+    influence = numbers - mean if weights is None else _influence(numbers, weights)
     labels, shared = dependence.labels, dependence.shared
     if labels is None:
         return mean + influence
@@ -170,11 +170,10 @@ def weighted_share(
     ----------
     .. [1] A. B. Owen, "Monte Carlo theory, methods and examples" (2013), section 9.2.
     """
-    worth = np.ones(len(numbers)) if weights is None else weights
-    if not worth.sum() > 0:
+    if not (len(numbers) if weights is None else weights.sum()) > 0:
         return Estimate()
-    mean = float(np.clip(np.average(numbers, weights=worth), 0.0, 1.0))
-    part_means = weighted_part_means(numbers, worth, dependence)
+    mean = float(np.clip(np.average(numbers, weights=weights), 0.0, 1.0))
+    part_means = weighted_part_means(numbers, weights, dependence)
     parts = len(part_means)
     if parts < 2:
         return Estimate(mean, reason=ONE_ROW if dependence.is_none else "")
@@ -211,7 +210,7 @@ def share_to_compare(numbers: Floats, dependence: Dependence = INDEPENDENT) -> E
     if not len(numbers):
         return Estimate()
     mean = float(np.clip(numbers.mean(), 0.0, 1.0))
-    part_means = weighted_part_means(numbers, np.ones(len(numbers)), dependence)
+    part_means = weighted_part_means(numbers, None, dependence)
     if len(part_means) < 2:
         return Estimate(mean)
     hits = binomial_sizes(numbers, None, dependence)

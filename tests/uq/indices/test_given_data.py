@@ -7,12 +7,16 @@ import openturns as ot
 import pytest
 from asked_indices import sensitivities, values
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
+from SALib.analyze import enhanced_hdmr
 from scipy import stats
 
 from uq.assess import sensitivities as module
 from uq.assess.sensitivity_table import sensitivity
 from uq.errors import InputError
+from uq.indices import expansions
+from uq.indices.given_data import quantile_indices
 from uq.indices.index import RefusedError
+from uq.indices.measures import even_cuts, slice_of
 from uq.indices.method import DesignSample
 from uq.indices.methods import METHODS
 from uq.result.result import Result
@@ -172,6 +176,47 @@ def test_quantile_indices_of_a_normal_sum_are_the_closed_form():
     for kind in ("Q0.1", "Q0.5", "Q0.9"):
         assert values(entry, kind) == pytest.approx(expected, abs=0.025)
         assert entry["dummy"][kind] < 0.02
+
+
+def test_quantile_indices_are_means_of_the_least_contrast_of_each_slice():
+    rng = np.random.default_rng(2)
+    x, y = rng.random((5, 3001)), rng.normal(size=3001)
+    x[1] = np.floor(4 * x[1])  # a slice for each of few values
+    sample = DesignSample.plain(y, {}, quantiles={"rare": 0.1, "median": 0.5})
+    raw, _ = quantile_indices(x.T, sample)
+
+    def contrast(part, p):
+        rest = part - np.quantile(part, p, method="inverted_cdf")
+        return np.mean(rest * (p - (rest < 0)))
+
+    for kind, p in zip(raw, (0.1, 0.5), strict=True):
+        count = min(len(y) // max(30, int(np.ceil(5 / p))), 48)
+        for i, column in enumerate(x):
+            number = slice_of(column, even_cuts(len(y), count))
+            parts = [y[number == k] for k in range(number.max() + 1)]
+            left = sum(len(part) * contrast(part, p) for part in parts) / len(y)
+            assert raw[kind][i] == 1 - left / contrast(y, p)
+
+
+def test_indices_of_an_output_do_not_depend_on_those_computed_before():
+    ds = plain("linear")
+    ds = with_output(ds, "other", ds["x1"].values ** 2 + ds["x4"].values)
+    for method in ("hdmr", "first-order", "quantile"):
+        together = sensitivities(ds, method)["outputs"]
+        for name in ("other", "y"):
+            assert sensitivities(ds, method, name)["outputs"][name] == together[name]
+
+
+def test_the_expansion_is_that_of_salib():
+    ds = plain("ishigami", samples=1200)
+    x, y = np.array(columns(ds, CASES["ishigami"][0])), ds["y"].values
+    problem = {"num_vars": 3, "names": ["0", "1", "2"]}
+    options = {"poly_order": 6, "bootstrap": 1, "subset": len(y), "return_emulator": True}
+    theirs = enhanced_hdmr.analyze(problem, x, y, **options)
+    for _ in range(2):  # computed, then kept
+        ours = expansions._expansion(x, y, 6)
+        np.testing.assert_array_equal(ours["S"], theirs["S"])
+        np.testing.assert_array_equal(ours.emulate(x), theirs.emulate(x))
 
 
 def test_quantile_indices_of_a_lifetime_are_those_of_the_rows_that_end_first():

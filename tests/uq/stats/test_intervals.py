@@ -99,6 +99,19 @@ def test_quantile_of_independent_rows_is_an_order_statistic(probability):
     assert ours == (scipys.low, scipys.high)
 
 
+@pytest.mark.parametrize("rows", [20, 199, 1000, 12345])
+def test_statistics_of_sorted_values_are_those_of_the_values_to_the_bit(rows):
+    values = np.random.default_rng(rows).lognormal(size=rows)
+    for ascending in (np.sort(values), np.sort(np.where(values > 2, np.inf, values))):
+        shuffled = np.random.default_rng(0).permutation(ascending)
+        for p in (0.05, 0.1, 1 / 3, 0.5, 0.9, 0.95):
+            assert quantile(ascending, p, is_sorted=True) == quantile(shuffled, p)
+            expected = quantile_interval(shuffled, p)
+            assert quantile_interval(shuffled, p, ascending=ascending) == expected
+        bounds = tolerance_bounds(ascending, 1, 0.9, 0.8, is_sorted=True)
+        np.testing.assert_array_equal(bounds, tolerance_bounds(shuffled, 1, 0.9, 0.8))
+
+
 def test_quantile_has_no_bound_where_rows_are_too_few():
     low, high = quantile_interval(VALUES[:20], 0.01)
     assert np.isnan(low) and high in VALUES

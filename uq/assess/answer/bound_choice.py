@@ -5,8 +5,6 @@ from dataclasses import replace
 from math import inf, isfinite, isnan, nan
 from typing import Any
 
-import numpy as np
-
 from uq.assess.answer.tolerance_bound import FAIL, ToleranceBound, piles
 from uq.assess.answer.wording import DisplayUnit, joined, sentence
 from uq.assess.fact import Fact, Functions
@@ -107,7 +105,7 @@ def tolerance_bound_of(
         end_verb(element),
         tuple(analysis.joint_bounds) if joint else (),
         **without_value(element),
-        recurs=_recurs(element),
+        recurs=element.law is None and described.recurs,
         ranks=(0, 0) if joint else _ranks(element, bounds),
         rows=int((element.present | element.failed).sum()),
         piled=piled,
@@ -128,15 +126,6 @@ def without_value(element: Element) -> dict[str, Any]:
     sound = ~element.failed
     undefined = float(element.undefined[sound].mean()) if sound.any() else 0.0
     return {"rows_failed": bool(element.failed.any()), "undefined": undefined}
-
-
-def _recurs(element: Element) -> bool:
-    """Return whether rows have equal values."""
-    if element.law is not None:
-        return False
-    values = element.for_thresholds[element.present & ~element.censored]
-    values = values[np.isfinite(values)]
-    return len(np.unique(values)) < len(values)
 
 
 def best_quantile(described: Described, p: float) -> Statistic | None:

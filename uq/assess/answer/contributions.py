@@ -16,7 +16,6 @@ from uq.assess.chosen_targets import chosen
 from uq.assess.effects import Effect, effects
 from uq.assess.fact import Fact
 from uq.assess.findings import Findings
-from uq.assess.row_inputs import independent_inputs
 from uq.assess.targets import IndexTarget, split_name
 from uq.indices.index import IndexKind
 from uq.result.result import Result
@@ -223,8 +222,7 @@ def effects_of(
     targets: list[IndexTarget] = list(chosen(rows, method, [name]))
     if len(targets) != 1:
         return {}
-    columns = independent_inputs(rows)
-    by_input = effects(targets[0].values, columns, rows.dependence, inputs)
+    by_input = effects(targets[0].values, findings.regressors, rows.dependence, inputs)
     return {name: effect for name, effect in by_input.items() if effect.slope.has_interval}
 
 

@@ -36,7 +36,7 @@ from uq.assess.statistic import Context, Statistic
 from uq.assess.statistics.counts import never_ending
 from uq.assess.statistics.quantiles import B_LIVES, quantiles
 from uq.assess.statistics.tolerance import tolerance
-from uq.assess.summary import Described, resolution_of, summarise
+from uq.assess.summary import Described, middle_of, resolution, summarise
 from uq.result.elements import Element
 from uq.result.result import Result
 from uq.stats import estimate_json
@@ -220,9 +220,13 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     result = findings.result
     asked = result.analysis_of(only and only.partition("[")[0])
     wanted = with_bounds(asked, findings)
-    summary = summarise(result, asked) if only else findings.summary
-    parts = [part for part in ("quantiles", "tolerance") if _asks(wanted, asked, part)]
-    more = summarise(result, wanted, parts=parts).outputs if parts else {}
+    beside = wanted, [p for p in ("quantiles", "tolerance") if _asks(wanted, asked, p)]
+    if only:
+        summary = summarise(result, asked, beside=beside)
+        more = summary.beside
+    else:
+        more = findings.beside(*beside)
+        summary = findings.summary
     context = Context(findings.rows, wanted, findings.rows.weights)
     return [
         _quantity(
@@ -301,7 +305,7 @@ def _quantity(
             "quantiles": tuple(quantiles(folded, context)),
             "tolerance": tuple(tolerance(folded, context)),
         }
-        described = Described(described.units, {**described.parts, **of_magnitude})
+        described = replace(described, parts={**described.parts, **of_magnitude}, fits={})
     middle = quantile_of(described, MIDDLE)
     wanted = context.analysis.wanted.get(element.output, "below" if element.is_angle else "")
     others = (quantile_of(described, p).value for p in (LOW, HIGH))
@@ -309,7 +313,8 @@ def _quantity(
     shortest = float(least.min()) if len(least) else nan
     typical = next(filter(isfinite, (middle.value, *others, shortest)), nan)
     unit = unit_for(element.units, abs(typical))
-    fine = unit._replace(resolution=resolution_of(folded, _NARROW))
+    middle_values = middle_of(folded) if element.is_angle else described.middle
+    fine = unit._replace(resolution=resolution(middle_values, _NARROW))
     tolerance_bound = tolerance_bound_of(
         findings.result, described, element, context.analysis, wanted, fine
     )

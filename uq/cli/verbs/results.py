@@ -237,20 +237,20 @@ def summary(
     opened = Result.open(result)
     findings = Findings(opened)
     answered = regime is None and not plain  # the answer is that of all rows
-    statistics = findings.summary
+    statistics = None
     if fits or not answered:
         statistics = summarise(opened, regime=regime, fits=fits, plain=plain)
     if json:
-        facts = summary_facts(statistics).json
-        if answered:
-            answer = conclude(findings)
+        answer = conclude(findings) if answered else None
+        facts = summary_facts(statistics or findings.summary).json
+        if answer is not None:
             facts |= boundary_facts(opened, findings.boundary).json
             facts |= {"answer": answer.fact.json, "card": card_of(findings, answer).json}
         print_json(facts)
     elif answered and not fits:
         summary_tables.show_findings(findings, explain=explain, full=full)
     else:
-        summary_tables.show_summary(opened, statistics)
+        summary_tables.show_summary(opened, statistics or findings.summary)
     _warn_if_altered(result)
 
 

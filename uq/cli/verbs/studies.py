@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from uq.cli import completion, say_when_interrupted
+from uq.cli import ask_for_plain_arrays, completion, say_when_interrupted
 from uq.cli import options as given
 from uq.errors import InputError
 from uq.execution.options import RunOptions
@@ -191,6 +191,9 @@ def run(
     quiet: given.Quiet = False,
 ) -> int:
     """Run a study, or resume it; show the summary."""
+    if scheduler is None:
+        ask_for_plain_arrays()
+
     from uq.cli.run import carried_out, end, loaded
     from uq.execution.runner import finished, output_path, run_study
     from uq.result.result import Result

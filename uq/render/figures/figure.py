@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator
 
 from uq.errors import InputError
@@ -154,12 +155,15 @@ def lay_out(figure: Figure) -> None:
 
 @contextmanager
 def ticks_placed_once() -> Iterator[None]:
-    """Place ticks once for each size of their axes, not whenever a box is asked for.
+    """Place ticks once for each size of their axes, and measure each text once.
 
-    matplotlib does so five times for each axis in each pass of a layout, most of its time.
+    matplotlib does so whenever a box is asked for, five times for each axis in each pass of a
+    layout, most of its time.
     """
     place: Any = Axis._update_ticks  # type: ignore[attr-defined]
+    measure: Any = Text._get_layout  # type: ignore[attr-defined]
     placed: dict[tuple[Any, ...], list[Any]] = {}
+    measured: dict[tuple[Any, ...], Any] = {}
 
     def once(axis: Any) -> list[Any]:
         key = axis, *axis.get_view_interval(), *axis.axes.bbox.bounds
@@ -167,11 +171,26 @@ def ticks_placed_once() -> Iterator[None]:
             placed[key] = place(axis)
         return placed[key]
 
+    def layout(text: Any, renderer: Any) -> Any:
+        if text.get_wrap():  # its lines depend on its place
+            return measure(text, renderer)
+        font = text.get_fontproperties()
+        key = (
+            *(type(renderer), text.get_figure(root=True).dpi, text.get_text(), hash(font)),
+            *(text.get_rotation(), text.get_rotation_mode(), text.get_ha(), text.get_va()),
+            *(text._multialignment, text._linespacing, text.get_usetex(), text.get_parse_math()),
+        )
+        if key not in measured:
+            measured[key] = measure(text, renderer)
+        return measured[key]
+
     Axis._update_ticks = once  # type: ignore[attr-defined]
+    Text._get_layout = layout  # type: ignore[attr-defined]
     try:
         yield
     finally:
         Axis._update_ticks = place  # type: ignore[attr-defined]
+        Text._get_layout = measure  # type: ignore[attr-defined]
 
 
 def _scales(figure: Figure) -> Iterator[Axis]:
