@@ -11,10 +11,10 @@ from scipy import integrate, stats
 
 from uq.cli.rare_event import as_json
 from uq.errors import InputError
-from uq.explore import active_learning
 from uq.explore.active_learning import EventEmulator
 from uq.explore.limit_state import EventLimit, scale_of
 from uq.explore.rare_events import rare_event
+from uq.stats import regressions
 from uq.stats.intervals import weighted_count_interval
 
 S = np.sqrt(2.0)
@@ -191,17 +191,17 @@ def test_without_openturns_there_is_a_sentence(monkeypatch):
 
 
 def test_a_process_that_cannot_be_factorised_gets_a_nugget(monkeypatch):
-    process, calls = active_learning.process, []
+    fitter, nuggets = regressions._process_fitter, []
 
-    def refusing(fit, z, y, uniform):
-        calls.append(fit["nugget"])
+    def refusing(z, y, fit):
+        nuggets.append(fit["nugget"])
         if fit["nugget"] < 1e-6:
             raise RuntimeError("no eigenvalue")
-        return process(fit, z, y, uniform)
+        return fitter(z, y, fit)
 
-    monkeypatch.setattr(active_learning, "process", refusing)
+    monkeypatch.setattr(regressions, "_process_fitter", refusing)
     ds = rare_event(branches(), "sum", 3.0, method="active", samples=100, workers=0)
-    assert min(calls) < 1e-6 and covers(ds, stats.norm.sf(3.0))
+    assert min(nuggets) < 1e-6 and covers(ds, stats.norm.sf(3.0))
 
 
 def test_a_weighted_count_has_the_limits_of_poisson():
