@@ -8,6 +8,7 @@ quarter with 400. scikit-learn is left out where it is not installed.
 import sys
 from functools import cache, partial
 from importlib.util import find_spec
+from itertools import combinations
 
 import numpy as np
 import openturns as ot
@@ -16,7 +17,7 @@ from scipy.stats import qmc
 
 from uq.indices.expansions import chaos_indices
 from uq.indices.first_order import first_order_indices
-from uq.indices.index import S1, ST
+from uq.indices.index import S1, S2, ST
 from uq.indices.method import DesignSample
 from uq.machines.emulator import parts_of
 from uq.stats.control_variate import controlled_mean, controlled_share
@@ -92,12 +93,21 @@ def truth(function):
     ya, yb = function(a), function(b)
     both = np.concatenate([ya, yb])
     values = {"mean": float(both.mean()), "P": 0.05}
-    for i in range(d):
+
+    def exchanged(*inputs):
         mixed = a.copy()
-        mixed[:, i] = b[:, i]
-        yc = function(mixed)
-        values[f"S1 {i}"] = float(np.mean((yb - both.mean()) * (yc - ya)) / both.var())
-        values[f"ST {i}"] = float(np.mean((ya - yc) ** 2) / 2 / both.var())
+        mixed[:, inputs] = b[:, inputs]
+        return function(mixed)
+
+    def closed(*inputs):
+        return float(np.mean((yb - both.mean()) * (exchanged(*inputs) - ya)) / both.var())
+
+    for i in range(d):
+        values[f"S1 {i}"] = max(closed(i), 0.0)
+        values[f"ST {i}"] = float(np.mean((ya - exchanged(i)) ** 2) / 2 / both.var())
+    for i, j in combinations(range(d), 2):
+        pair = closed(i, j) - values[f"S1 {i}"] - values[f"S1 {j}"]
+        values[f"S2 {i},{j}"] = max(pair, 0.0)
     return values, float(np.quantile(both, 0.95))
 
 
@@ -182,14 +192,14 @@ def estimates(function, n, seed):
     for name in names:
         table[f"S1 {name}"] = {"uq": by_chaos[S1][name], "rows alone": by_rows[S1][name]}
         table[f"ST {name}"] = {"uq": by_chaos[ST][name]}
-    return table
+    return table | {f"S2 {pair}": {"uq": by_chaos[S2][pair]} for pair in by_chaos[S2]}
 
 
 def coverage(repetitions, rows=ROWS):
     """Print how often intervals cover, and their median width over that of the rows alone."""
     methods = ["uq", "rows alone", *PEERS]
     columns = [(quantity, method) for quantity in ("mean", "P") for method in methods]
-    columns += [("S1", "uq"), ("S1", "rows alone"), ("ST", "uq")]
+    columns += [("S1", "uq"), ("S1", "rows alone"), ("ST", "uq"), ("S2", "uq")]
     print("| function | rows | times |", *(f" {q}, {m} |" for q, m in columns), sep="")
     print("|---|---|---|" + "---|" * len(columns))
     for function in FUNCTIONS:

@@ -1,6 +1,7 @@
 """Emulators: what they predict, what they refuse, and that their errors are carried on."""
 
 import json
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -10,28 +11,29 @@ from computed import UNIFORM, computed, kinds, linear, study_of
 import uq as api
 from uq.contract import Status
 from uq.errors import InputError
+from uq.explore.rare_events import rare_event
 from uq.machines.emulator import EmulatedRows, emulator_at, parts_of
+from uq.machines.serving import address_of, server_of
 from uq.study.installed_models import model_at
 
 PAIRED, SIGNS = "sample_models:PAIRED", {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 
 
-def ishigami(samples=200, seed=1, **analysis):
-    return computed(
-        study_of(
-            {
-                "study": {"name": "waves", "model": "ishigami"},
-                "design": {"method": "monte-carlo", "samples": samples, "seed": seed},
-                "uncertain": dict.fromkeys(("x1", "x2", "x3"), SIGNS),
-                "analysis": {"thresholds": {"y": 10.0}} | analysis,
-            }
-        )
-    )
+WAVES = {
+    "study": {"name": "waves", "model": "ishigami"},
+    "uncertain": dict.fromkeys(("x1", "x2", "x3"), SIGNS),
+    "analysis": {"thresholds": {"y": 10.0}},
+}
+
+
+def ishigami(samples=150, seed=1):
+    design = {"method": "monte-carlo", "samples": samples, "seed": seed}
+    return computed(study_of(WAVES | {"design": design}))
 
 
 @pytest.fixture(scope="module")
 def waves(tmp_path_factory):
-    """Return the file of an emulator of Ishigami's function from 200 rows."""
+    """Return the file of an emulator of Ishigami's function from 150 rows."""
     path = tmp_path_factory.mktemp("emulators") / "waves.emulator"
     api.emulate(ishigami(), path)
     return path
@@ -61,7 +63,7 @@ def test_rows_have_the_same_bits_one_by_one_and_in_another_process(waves, tmp_pa
         together, [predicted(waves, x[i : i + 1], i)[0]["y"][0] for i in range(64)]
     )
     study = tmp_path / "again.toml"
-    text = ishigami().attrs["study"].replace("samples = 200", "samples = 300")
+    text = ishigami().attrs["study"].replace("samples = 150", "samples = 300")
     study.write_text(text)
     results = [
         api.run(api.load_study(study, str(waves)), tmp_path / f"{n}.nc", workers=n, chunk_rows=c)
@@ -69,6 +71,23 @@ def test_rows_have_the_same_bits_one_by_one_and_in_another_process(waves, tmp_pa
     ]
     assert np.array_equal(results[0]["y"], results[1]["y"])
     assert results[0].attrs["model"] == "ishigami-emulator"
+
+
+def test_an_emulator_that_is_served_has_the_same_bits(waves):
+    x = np.random.default_rng(0).uniform(-3, 3, (5, 3))
+    server = server_of(model_at(str(waves)), port=0)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    address = address_of("127.0.0.1", server.server_address[1], "ishigami-emulator")
+    assert np.array_equal(predicted(address, x)[0]["y"], predicted(waves, x)[0]["y"])
+    server.shutdown()
+    server.server_close()
+
+
+def test_an_emulator_takes_events_of_several_limits(waves):
+    of = study_of(WAVES | {"design": {"method": "monte-carlo", "samples": 64}}, str(waves))
+    limits = [("y", 14.0, "above"), ("y", -8.0, "below")]
+    ds = rare_event(of, any_of=limits, samples=300, replicates=4, workers=0)
+    assert ds["low"] < 0.0089 < ds["high"] < 0.02  # of Ishigami's function: 0.0089
 
 
 def test_an_output_that_jumps_is_refused():
@@ -96,7 +115,7 @@ def test_noise_alone_is_refused_and_the_rest_is_kept():
 
 
 def test_lives_regimes_and_undefined_values_are_classified():
-    rows = kinds(samples=400)
+    rows = kinds(samples=300)
     emulator = api.emulate(rows, outputs=["life", "angle", "regime"])
     assert not emulator.refused
     new = kinds(samples=1000)
