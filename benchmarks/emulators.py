@@ -19,7 +19,7 @@ from uq.indices.expansions import chaos_indices
 from uq.indices.first_order import first_order_indices
 from uq.indices.index import S1, S2, ST
 from uq.indices.method import DesignSample
-from uq.machines.emulator import parts_of
+from uq.machines.emulator import inputs_of, parts_of
 from uq.stats.control_variate import controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import mean_interval, share_interval
@@ -137,12 +137,10 @@ if find_spec("sklearn"):
 def fitted(x, y):
     """Return the regression, scaled inputs, parts and laws that `uq emulate` uses."""
     scales = [scale_of(str(i), column) for i, column in enumerate(x.T)]
-    z = scaled(scales, x)
-    uniform = tuple(scale.uniform for scale in scales)
-    parts = parts_of(x)
-    regression = regress(z, y, np.arange(len(y)), parts, uniform)
-    predictor = Predictor(regression, z, parts, uniform)
-    return regression, predictor, partial(scaled, scales), parts
+    rows = inputs_of(scales, x)
+    regression = regress(rows, y, np.arange(len(y)))
+    predictor = Predictor(regression, rows)
+    return regression, predictor, partial(scaled, scales), rows.parts
 
 
 def errors(repetitions):

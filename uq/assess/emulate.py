@@ -23,19 +23,19 @@ from uq.machines.emulator import (
     Classifier,
     ElementFit,
     Emulator,
+    inputs_of,
     most_likely,
-    parts_of,
     text_of,
 )
 from uq.result.elements import flags
 from uq.result.result import AnyResult, Result
 from uq.stats.regressions import (
     PROCESS,
+    Inputs,
     Regression,
     openturns,
     regress,
     scale_of,
-    scaled,
     standard_moment,
 )
 from uq.study.definition import study_from_text
@@ -126,14 +126,13 @@ def emulate(
         raise InputError(f"{counted(len(rows), 'row')}: an emulator needs {FEWEST} at least")
     scales = [scale_of(name, values) for name, values in varying.items()]
     x = np.column_stack(list(varying.values()))
-    z = scaled(scales, x)
-    parts, uniform = parts_of(x), tuple(scale.uniform for scale in scales)
+    inputs = inputs_of(scales, x)
     elements, refused = dict[str, list[ElementFit]](), dict[str, str]()
     companions = {cause_name(name) for name, output in rows.outputs.items() if output.is_lifetime}
     for name in names:
         if name not in companions:
             try:
-                elements[name] = _fits(ds, name, rows.outputs[name], z, parts, uniform)
+                elements[name] = _fits(ds, name, rows.outputs[name], inputs)
             except _Refused as refusal:
                 refused[name] = str(refusal)
     emulator = Emulator(
@@ -177,14 +176,7 @@ def _inputs(ds: xr.Dataset) -> tuple[dict[str, Floats], dict[str, str]]:
     return varying, equal
 
 
-def _fits(
-    ds: xr.Dataset,
-    name: str,
-    output: Output,
-    z: Floats,
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
-) -> list[ElementFit]:
+def _fits(ds: xr.Dataset, name: str, output: Output, inputs: Inputs) -> list[ElementFit]:
     """Return the fits of all elements of an output.
 
     Raises
@@ -205,27 +197,22 @@ def _fits(
         at: Any = (slice(None), *index)
         try:
             if output.is_category:
-                fits.append(_of_category(values[at], labels, index, z, parts, uniform))
+                fits.append(_of_category(values[at], labels, index, inputs))
             else:
-                fits.append(_of_number(output, values[at], censored[at], index, z, parts, uniform))
+                fits.append(_of_number(output, values[at], censored[at], index, inputs))
         except _Refused as refusal:
             raise _Refused(f"{label}: {refusal}" if sizes else str(refusal)) from None
     return fits
 
 
 def _of_category(
-    codes: NDArray[Any],
-    labels: list[str],
-    index: tuple[int, ...],
-    z: Floats,
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
+    codes: NDArray[Any], labels: list[str], index: tuple[int, ...], inputs: Inputs
 ) -> ElementFit:
     if (codes < 0).any():
         raise _Refused("some rows have no label")
     present = np.unique(codes).tolist()
     occurring = [labels[code] for code in present]
-    classifier = _classifier(codes, present, occurring, z, parts, uniform)
+    classifier = _classifier(codes, present, occurring, inputs)
     return ElementFit(list(index), False, inf, None, classifier)
 
 
@@ -234,9 +221,7 @@ def _of_number(
     values: Floats,
     censored: NDArray[np.bool_],
     index: tuple[int, ...],
-    z: Floats,
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
+    inputs: Inputs,
 ) -> ElementFit:
     states = [VALUE, NEVER, CENSORED, UNDEFINED]
     state = np.select([censored, np.isposinf(values), np.isnan(values)], [2, 1, 3], 0)
@@ -253,7 +238,7 @@ def _of_number(
     spans = bool(y.min() > 0 and y.max() > _RATIO * y.min())
     for logarithmic in [True] if output.is_lifetime else [False, True][: 1 + spans]:
         t = np.log(y) if logarithmic else y
-        regression = regress(z[rows], t, rows, parts[rows], uniform)
+        regression = regress(inputs, t, rows)
         missed = t - regression.sd * np.array(regression.errors)
         errors = y - np.exp(np.minimum(missed, 690.0)) if logarithmic else y - missed
         candidates.append((float(np.mean(errors**2)), logarithmic, regression))
@@ -262,7 +247,7 @@ def _of_number(
     classifier = None
     if len(present) > 1:
         labels = [states[code] for code in present]
-        classifier = _classifier(state, present, labels, z, parts, uniform)
+        classifier = _classifier(state, present, labels, inputs)
     horizon = float(values[censored].min()) if censored.any() else inf
     return ElementFit(list(index), logarithmic, horizon, regression, classifier)
 
@@ -288,12 +273,7 @@ def _check(regression: Regression) -> None:
 
 
 def _classifier(
-    codes: NDArray[np.int64],
-    numbers: list[int],
-    labels: list[str],
-    z: Floats,
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
+    codes: NDArray[np.int64], numbers: list[int], labels: list[str], inputs: Inputs
 ) -> Classifier:
     """Return a classifier of rows by codes, of which `numbers` occur, with their labels.
 
@@ -307,7 +287,7 @@ def _classifier(
     regressions, scores = list[Regression](), list[Floats]()
     for code in range(count if count > 2 else count - 1):
         indicator = 1.0 * (codes == code)
-        regression = regress(z, indicator, rows, parts, uniform, (PROCESS,))
+        regression = regress(inputs, indicator, rows, (PROCESS,))
         regressions.append(regression)
         scores.append(indicator - regression.sd * np.array(regression.errors))
     if not scores:

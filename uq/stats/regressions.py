@@ -357,35 +357,48 @@ class Regression(NamedTuple):
         return self.sd * float(np.sqrt(np.mean(np.square(self.errors))))
 
 
+class Inputs(NamedTuple):
+    """Inputs of the rows of an emulator.
+
+    Attributes
+    ----------
+    z : ndarray, shape (rows, d)
+        Scaled.
+    parts : ndarray of int, shape (rows,)
+        Part of each row.
+    uniform : tuple of bool
+        Whether each input is uniform.
+    """
+
+    z: Floats
+    parts: NDArray[np.int64]
+    uniform: tuple[bool, ...]
+
+
 class Predictor:
     """Predictions of a regression, prepared when they are first needed.
 
     Parameters
     ----------
     regression : Regression
-    z : ndarray, shape (rows, d)
-        Scaled inputs of all rows of the emulator.
-    parts : ndarray of int, shape (rows,)
-    uniform : tuple of bool
-        Of each input.
+    inputs : Inputs
+        Of all rows of the emulator.
     """
 
-    def __init__(
-        self, regression: Regression, z: Floats, parts: NDArray[np.int64], uniform: tuple[bool, ...]
-    ):
-        self.regression, self._uniform = regression, uniform
+    def __init__(self, regression: Regression, inputs: Inputs):
+        self.regression = regression
         rows = np.array(regression.rows)
-        self._z, self._parts = z[rows], parts[rows]
+        self._inputs = inputs._replace(z=inputs.z[rows], parts=inputs.parts[rows])
         self._y = np.array(regression.values)
         self._part = cache(self._prepared)
         self.standard_errors = np.array(regression.errors) / np.array(regression.deviations)
 
     def _prepared(self, part: int) -> Predict:
         """Return the prediction from all rows (-1), or from those of all parts but one."""
-        kept = self._parts != part
+        z, parts, uniform = self._inputs
+        kept = parts != part
         fit = self.regression.fit if part < 0 else self.regression.folds[part]
-        prediction = _KINDS[self.regression.kind][1]
-        return prediction(fit, self._z[kept], self._y[kept], self._uniform)
+        return _KINDS[self.regression.kind][1](fit, z[kept], self._y[kept], uniform)
 
     def __call__(self, z: Floats) -> tuple[Floats, Floats]:
         """Return means, and standard deviations up to a factor, shape (n,) each."""
@@ -401,29 +414,22 @@ class Predictor:
 
 
 def regress(
-    z: Floats,
-    y: Floats,
-    rows: NDArray[np.int64],
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
-    kinds: tuple[str, ...] = (CHAOS, PROCESS),
+    inputs: Inputs, y: Floats, rows: NDArray[np.int64], kinds: tuple[str, ...] = (CHAOS, PROCESS)
 ) -> Regression:
     """Return the kind of regression that predicts parts of the rows best from the others.
 
     Parameters
     ----------
-    z : ndarray, shape (n, d)
-        Scaled inputs.
+    inputs : Inputs
+        Of all rows of the emulator.
     y : ndarray, shape (n,)
         Not constant.
     rows : ndarray of int, shape (n,)
-        Positions among the rows of the emulator.
-    parts : ndarray of int, shape (n,)
-        Part of each row.
-    uniform : tuple of bool
+        Positions of its rows among those of the emulator.
     kinds : tuple of str
         A Gaussian process is left out where there are too many rows.
     """
+    z, parts, uniform = inputs.z[rows], inputs.parts[rows], inputs.uniform
     mean, sd = float(y.mean()), float(y.std())
     t = (y - mean) / sd
     candidates = list[Regression]()
