@@ -15,6 +15,7 @@ import openturns as ot
 from scipy.special import ndtri
 from scipy.stats import qmc
 
+from uq.assess.emulate import Refused, check
 from uq.indices.expansions import chaos_indices
 from uq.indices.first_order import first_order_indices
 from uq.indices.index import S1, S2, ST
@@ -164,6 +165,15 @@ def errors(repetitions):
             print(f"| {function.__name__} | {n} | {most} | {cells} |", flush=True)
 
 
+def is_refused(regression):
+    """Return whether `uq emulate` refuses a regression."""
+    try:
+        check(regression)
+    except Refused:
+        return True
+    return False
+
+
 def estimates(function, n, seed):
     """Return estimates of one repetition: quantity -> method -> Estimate.
 
@@ -177,6 +187,7 @@ def estimates(function, n, seed):
     for name, peer in PEERS.items():
         methods[name] = alone(peer(x, y)(many), limit)
     table = {quantity: {m: e[quantity] for m, e in methods.items()} for quantity in ("mean", "P")}
+    table["refused"] = methods["uq"]["refused"]
     names = [str(i) for i in range(len(laws))]
     sample = DesignSample.plain(
         y,
@@ -198,14 +209,15 @@ def coverage(repetitions, rows=ROWS):
     methods = ["uq", "rows alone", *PEERS]
     columns = [(quantity, method) for quantity in ("mean", "P") for method in methods]
     columns += [("S1", "uq"), ("S1", "rows alone"), ("ST", "uq"), ("S2", "uq")]
-    print("| function | rows | times |", *(f" {q}, {m} |" for q, m in columns), sep="")
+    print("| function | rows | refused |", *(f" {q}, {m} |" for q, m in columns), sep="")
     print("|---|---|---|" + "---|" * len(columns))
     for function in FUNCTIONS:
         for n in rows:
             count = max(repetitions * ROWS[0] // n, 1)
             tables = [estimates(function, n, seed) for seed in range(count)]
             cells = [cell(function, tables, *column) for column in columns]
-            print(f"| {function.__name__} | {n} | {count} | {' | '.join(cells)} |", flush=True)
+            refused = f"{sum(table['refused'] for table in tables)} of {count}"
+            print(f"| {function.__name__} | {n} | {refused} | {' | '.join(cells)} |", flush=True)
 
 
 def cell(function, tables, quantity, method):
@@ -236,8 +248,11 @@ def alone(y, limit):
 
 
 def with_emulator(x, y, many, limit):
-    """Return the mean and the share beyond a limit with an emulator as control variate."""
-    _, predictor, scale, parts = fitted(x, y)
+    """Return the mean and the share beyond a limit with an emulator as control variate.
+
+    Also whether `uq emulate` would refuse it.
+    """
+    regression, predictor, scale, parts = fitted(x, y)
     here = predictor.cross_fitted(scale(x), parts)
     there = predictor.cross_fitted(scale(many), parts_of(many))
     kept, hits = np.ones(len(y), bool), y > limit
@@ -245,6 +260,7 @@ def with_emulator(x, y, many, limit):
     return {
         "mean": controlled_mean(y, kept, controls=controls[0], many=controls[1])[0],
         "P": controlled_share(hits, kept, control=here, many=there)[0],
+        "refused": is_refused(regression),
     }
 
 

@@ -59,7 +59,7 @@ _MOST_ELEMENTS = 50
 _RATIO = 10.0  # of largest to smallest value from which logarithms are fitted
 
 
-class _Refused(Exception):
+class Refused(Exception):
     """Raised with the reason why an output has no emulator."""
 
 
@@ -133,7 +133,7 @@ def emulate(
         if name not in companions:
             try:
                 elements[name] = _fits(ds, name, rows.outputs[name], inputs)
-            except _Refused as refusal:
+            except Refused as refusal:
                 refused[name] = str(refusal)
     emulator = Emulator(
         _source(ds, x),
@@ -181,13 +181,13 @@ def _fits(ds: xr.Dataset, name: str, output: Output, inputs: Inputs) -> list[Ele
 
     Raises
     ------
-    _Refused
+    Refused
     """
     sizes = [ds.sizes[dim] for dim in output.dims]
     if prod(sizes) > _MOST_ELEMENTS:
-        raise _Refused(f"has {prod(sizes)} elements; {_MOST_ELEMENTS} are the most")
+        raise Refused(f"has {prod(sizes)} elements; {_MOST_ELEMENTS} are the most")
     if output.may_be_between:
-        raise _Refused("some lives are known within an interval only")
+        raise Refused("some lives are known within an interval only")
     values = ds[name].values
     flag = censored_name(name)
     censored = ds[flag].values.astype(bool) if flag in ds else np.zeros(values.shape, bool)
@@ -200,8 +200,8 @@ def _fits(ds: xr.Dataset, name: str, output: Output, inputs: Inputs) -> list[Ele
                 fits.append(_of_category(values[at], labels, index, inputs))
             else:
                 fits.append(_of_number(output, values[at], censored[at], index, inputs))
-        except _Refused as refusal:
-            raise _Refused(f"{label}: {refusal}" if sizes else str(refusal)) from None
+        except Refused as refusal:
+            raise Refused(f"{label}: {refusal}" if sizes else str(refusal)) from None
     return fits
 
 
@@ -209,7 +209,7 @@ def _of_category(
     codes: NDArray[Any], labels: list[str], index: tuple[int, ...], inputs: Inputs
 ) -> ElementFit:
     if (codes < 0).any():
-        raise _Refused("some rows have no label")
+        raise Refused("some rows have no label")
     present = np.unique(codes).tolist()
     occurring = [labels[code] for code in present]
     classifier = _classifier(codes, present, occurring, inputs)
@@ -228,12 +228,12 @@ def _of_number(
     present = [code for code in range(4) if (state == code).any()]
     rows = np.flatnonzero(state == 0)
     if len(rows) < FEWEST:
-        raise _Refused(f"{counted(len(rows), 'row')} with a value; {FEWEST} are needed")
+        raise Refused(f"{counted(len(rows), 'row')} with a value; {FEWEST} are needed")
     y = values[rows]
     if not np.ptp(y) > 0:
-        raise _Refused("has the same value in all rows")
+        raise Refused("has the same value in all rows")
     if output.is_lifetime and not y.min() > 0:
-        raise _Refused("some lives are zero, which have no logarithm")
+        raise Refused("some lives are zero, which have no logarithm")
     candidates = []
     spans = bool(y.min() > 0 and y.max() > _RATIO * y.min())
     for logarithmic in [True] if output.is_lifetime else [False, True][: 1 + spans]:
@@ -243,7 +243,7 @@ def _of_number(
         errors = y - np.exp(np.minimum(missed, 690.0)) if logarithmic else y - missed
         candidates.append((float(np.mean(errors**2)), logarithmic, regression))
     _, logarithmic, regression = min(candidates, key=lambda candidate: candidate[0])
-    _check(regression)
+    check(regression)
     classifier = None
     if len(present) > 1:
         labels = [states[code] for code in present]
@@ -252,21 +252,21 @@ def _of_number(
     return ElementFit(list(index), logarithmic, horizon, regression, classifier)
 
 
-def _check(regression: Regression) -> None:
+def check(regression: Regression) -> None:
     """Refuse a regression that errs too much, or whose output jumps.
 
     A jump leaves few large errors on its two sides, noise many small ones.
     """
     error = (1 - regression.q2) ** 0.5 if regression.q2 < 1 else 0.0
     if error > LARGEST_ERROR:
-        raise _Refused(
+        raise Refused(
             f"its error is {percent(error)} of the standard deviation of the output; a third is the"
             " most"
         )
     z = np.array(regression.errors)
     largest = float(np.abs(z).max() / z.std()) * error if z.std() else 0.0
     if largest > _LARGEST_OF_A_ROW and standard_moment(z, 4) > _FLAT:
-        raise _Refused(
+        raise Refused(
             f"a row is missed by {percent(largest)} of the standard deviation of the output, the"
             f" others by {percent(error)}: the output jumps, or is too steep for these rows"
         )
@@ -279,7 +279,7 @@ def _classifier(
 
     Raises
     ------
-    _Refused
+    Refused
         When it errs too often.
     """
     count, rows = len(labels), np.arange(len(codes))
@@ -297,7 +297,7 @@ def _classifier(
     np.add.at(confusion, (predicted, codes), 1)
     classifier = Classifier(labels, numbers, regressions, confusion.tolist())
     if classifier.error > LARGEST_ERROR * classifier.ignorance:
-        raise _Refused(
+        raise Refused(
             f"{percent(classifier.error)} of rows would get the wrong label of"
             f" {', '.join(labels)}; always the most frequent one, {percent(classifier.ignorance)}"
         )
@@ -358,7 +358,7 @@ def emulator_facts(emulator: Emulator) -> Fact:
     outputs = {
         name: Fact(_numbers(fits), (regress,)) for name, fits in emulator.elements.items()
     } | {
-        name: Fact({"kind": None, "q2": None, "error_sd": None, "refused": why}, (_check,))
+        name: Fact({"kind": None, "q2": None, "error_sd": None, "refused": why}, (check,))
         for name, why in emulator.refused.items()
     }
     members = {"rows": len(emulator.x), "failed": emulator.failed, "outputs": outputs}

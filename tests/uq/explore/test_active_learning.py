@@ -108,7 +108,7 @@ def test_the_scale_of_a_skewed_life_is_logarithmic_and_keeps_the_side(below):
     ids=("stair", "cliff"),
 )
 def test_a_jump_that_the_emulator_predicts_badly_is_corrected_by_rows(of, output, threshold, truth):
-    ds = rare_event(of, output, threshold, method="active", workers=0)
+    ds = rare_event(of, output, threshold, method="active", samples=200, workers=0)
     assert covers(ds, truth)
     assert int(ds["contradicted"]) > 0
     assert interval(ds)[1] > 1.3 * interval(ds)[0]
@@ -123,7 +123,7 @@ def test_the_interval_holds_if_the_emulator_is_wrong(monkeypatch, shift):
         return np.where(mean + shift > 0, 0.999, 1e-9), mean + shift, most + shift
 
     monkeypatch.setattr(EventEmulator, "__call__", wrong)
-    ds = rare_event(branches(), "sum", 4.753424, method="active", samples=200, workers=0)
+    ds = rare_event(branches(), "sum", 4.753424, method="active", samples=150, workers=0)
     assert int(ds["contradicted"]) > 3
     assert not 0.7e-6 < float(ds["emulated"]) < 1.4e-6
     assert covers(ds, 1e-6)
@@ -132,7 +132,7 @@ def test_the_interval_holds_if_the_emulator_is_wrong(monkeypatch, shift):
 def test_rows_with_their_own_random_numbers_are_within_the_interval():
     of = study("limit_states:ROUGH", PLANE)
     truth, _ = integrate.quad(lambda noise: stats.norm.sf(4.5 - noise), -0.5, 0.5, epsabs=0)
-    ds = rare_event(of, "rough", 4.5, method="active", workers=0)
+    ds = rare_event(of, "rough", 4.5, method="active", samples=150, workers=0)
     assert covers(ds, truth)
     assert int(ds["contradicted"]) > 0
 
@@ -146,7 +146,7 @@ def test_an_event_out_of_reach_is_bounded_by_plain_rows():
 
 def test_rows_without_a_value_count_as_outside_and_have_a_bound():
     of = linear(settings={"fail_above": 0.97})
-    ds = rare_event(of, "y", 9.0, method="active", workers=0)
+    ds = rare_event(of, "y", 9.0, method="active", samples=150, workers=0)
     assert int(ds["failed"]) > 0
     truth = 0.97**4 / (4 * 144)  # without the rows that fail
     assert covers(ds, truth) and float(ds["failed_high"]) > max(1 / 576, float(ds["high"]))
