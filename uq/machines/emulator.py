@@ -430,12 +430,11 @@ def _parameters_of(emulator: Emulator) -> type:
 
 
 def _other_settings(emulator: Emulator, choices: Mapping[str, Any]) -> str:
-    given = json.loads(json.dumps(choices))
-    for name in given:
-        if given.get(name) != emulator.settings.get(name):
+    for name, given in json.loads(json.dumps(choices)).items():
+        if given != (learnt := emulator.settings.get(name)):
             return (
-                f"[settings] {name}: the rows of the emulator were computed with"
-                f" {emulator.settings.get(name)!r}, not {given.get(name)!r}"
+                f"[settings] {name}: the rows of the emulator were computed with {learnt!r}, not"
+                f" {given!r}"
             )
     return ""
 
