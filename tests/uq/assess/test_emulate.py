@@ -12,9 +12,9 @@ import uq as api
 from uq.contract import Status
 from uq.errors import InputError
 from uq.explore.rare_events import rare_event
-from uq.machines.emulator import EmulatedRows, emulator_at, parts_of
+from uq.machines.emulator import EmulatedRows, emulator_at, model_of_emulator, parts_of
 from uq.machines.serving import address_of, server_of
-from uq.study.installed_models import model_at
+from uq.study.installed_models import find_model, model_at
 
 PAIRED, SIGNS = "sample_models:PAIRED", {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 
@@ -54,6 +54,9 @@ def test_new_rows_are_predicted_with_the_error_that_is_stated(waves):
     true = np.sqrt(np.mean((y - new["y"].values) ** 2))
     # An error is drawn and an error is made: their squares add up.
     assert 0.3 * stated < true < 2 * np.sqrt(2) * stated < 0.3 * float(new["y"].std())
+    # Two draws of the same rows differ by two errors.
+    drawn_twice = predicted(waves, x, seed=2000)[0]["y"] - y
+    assert np.std(drawn_twice) == pytest.approx(np.sqrt(2) * stated, rel=0.3)
 
 
 def test_rows_have_the_same_bits_one_by_one_and_in_another_process(waves, tmp_path):
@@ -123,6 +126,11 @@ def test_lives_regimes_and_undefined_values_are_classified():
     batch = EmulatedRows(emulator, ("x1", "x2"))
     columns, status, _ = batch(x, np.arange(600, dtype=np.uint64) * np.uint64(2**40), None)
     assert (status == Status.OK).all()
+    # Lives beyond the time at which rows were cut are censored.
+    flags = columns["life_censored"].reshape(600, -1).T
+    for life, cut in zip(columns["life"].reshape(600, -1).T, flags, strict=True):
+        assert len(set(life[cut])) == 1
+        assert not (life[~cut & np.isfinite(life)] > life[cut][0]).any()
     truth = new.isel(row=slice(400, None))
     assert np.mean(np.isposinf(columns["life"]) == np.isposinf(truth["life"].values)) > 0.95
     assert np.mean(columns["life_censored"] == truth["life_censored"].values) > 0.93
@@ -131,6 +139,17 @@ def test_lives_regimes_and_undefined_values_are_classified():
     ended = np.isfinite(columns["life"]) & np.isfinite(truth["life"].values)
     ended &= ~columns["life_censored"] & (truth["life_censored"].values == 0)
     assert columns["life"][ended] == pytest.approx(truth["life"].values[ended], rel=0.02)
+
+
+def test_labels_are_drawn_as_often_as_the_classifier_errs():
+    emulator = api.emulate(kinds(samples=80), outputs=["regime"])
+    classifier = emulator.elements["regime"][0].classifier
+    assert classifier.confusion == [[43, 1], [0, 36]]
+    x = np.tile([[0.1, 0.5], [0.9, 0.5]], (2000, 1))
+    seeds = np.arange(4000, dtype=np.uint64) * np.uint64(2**40)
+    regime = EmulatedRows(emulator, ("x1", "x2"))(x, seeds, None)[0]["regime"]
+    wrong = {regime[0::2].mean(), 1 - regime[1::2].mean()}
+    assert min(wrong) == 0.0 and max(wrong) == pytest.approx(1 / 44, abs=0.01)
 
 
 def test_rows_outside_those_learnt_fail_with_a_sentence(waves):
@@ -157,6 +176,43 @@ def test_other_constants_and_settings_are_refused(waves, tmp_path, uq):
         with pytest.raises(InputError, match=words):
             study_of(series | change, str(path))
     assert study_of(series, str(path)).model.name == "series-emulator"
+
+
+def test_other_settings_of_an_installed_model_are_refused(tmp_path):
+    tables = {
+        "study": {"name": "linear", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 64},
+        "uncertain": dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM),
+    }
+    path = tmp_path / "linear.emulator"
+    api.emulate(computed(study_of(tables)), path)
+    assert study_of(tables, str(path)).model.name == "linear-emulator"
+    with pytest.raises(InputError, match="fail_above: the rows of the emulator were computed with"):
+        study_of(tables | {"settings": {"fail_above": 0.9}}, str(path))
+
+
+def test_inputs_that_were_equal_must_stay_equal():
+    ds = linear(samples=64)
+    ds["y"] = ds["y"] + 4 * (ds["x3"] - ds["x4"])
+    ds["x4"] = ds["x3"].assign_attrs(ds["x4"].attrs)
+    ds["y"].attrs = linear(samples=64)["y"].attrs
+    emulator = api.emulate(ds)
+    assert emulator.equal == {"x4": "x3"}
+    x = np.full((2, 4), 0.5) + [[0, 0, 0, 0], [0, 0, 0, 0.1]]
+    batch = EmulatedRows(emulator, ("x1", "x2", "x3", "x4"))
+    columns, status, messages = batch(x, np.zeros(2, np.uint64), None)
+    assert columns["y"][0] == pytest.approx(5.0, abs=0.01)
+    assert status.tolist() == [Status.OK, Status.RAISED]
+    assert messages == {1: "x4 differs from x3; in the rows of the emulator it does not"}
+
+
+def test_as_a_twin_it_predicts_each_row_from_the_rows_of_other_parts(waves):
+    emulator, ds = emulator_at(waves), ishigami()
+    twin = model_of_emulator(emulator, "", find_model, cross_fitted=True)
+    x = np.column_stack([ds[name] for name in ("x1", "x2", "x3")])
+    errors = twin.batch(x, np.arange(150, dtype=np.uint64), None)[0]["y"] - ds["y"].values
+    stated = emulator.elements["y"][0].regression.error_sd
+    assert np.sqrt(np.mean(errors**2)) == pytest.approx(stated, rel=1e-9)
 
 
 @pytest.mark.slow
