@@ -102,6 +102,30 @@ def test_an_output_that_jumps_is_refused():
             api.emulate(jump)
 
 
+def test_a_jump_that_few_rows_cross_is_refused():
+    ds = ishigami()
+    jump = ds.assign(y=ds["x1"] + 2.0 * (ds["x2"] > 2.6))
+    jump["y"].attrs = ds["y"].attrs
+    with pytest.raises(InputError, match="the output jumps, or is too steep for these rows"):
+        api.emulate(jump)
+
+
+def test_labels_that_no_input_explains_are_refused():
+    ds = kinds(samples=80)
+    ds["regime"].values[:] = np.random.default_rng(0).permutation(ds["regime"].values)
+    with pytest.raises(InputError, match="of rows would get the wrong label"):
+        api.emulate(ds, outputs=["regime"])
+
+
+def test_failed_rows_are_not_learnt_and_few_rows_are_refused():
+    ds = linear(samples=64, settings={"fail_above": 0.9})
+    failed = int((ds["status"] != Status.OK).sum())
+    emulator = api.emulate(ds)
+    assert 0 < failed == emulator.failed and len(emulator.x) == 64 - failed
+    with pytest.raises(InputError, match="39 rows: an emulator needs 40 at least"):
+        api.emulate(linear(samples=39))
+
+
 def paired(samples=120):
     tables = {
         "study": {"name": "paired", "model": "linear"},
