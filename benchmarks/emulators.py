@@ -234,7 +234,7 @@ def cell(function, tables, quantity, method):
                 reference = by_method["rows alone"] if quantity in ("mean", "P") else None
                 width = estimate.high - estimate.low
                 widths.append(width / (reference.high - reference.low) if reference else width)
-    return f"{np.mean(held):.0%}, {np.median(widths):.2g}" if held else "none"
+    return f"{100 * np.mean(held):.0f} %, {np.median(widths):.2g}" if held else "none"
 
 
 def alone(y, limit):

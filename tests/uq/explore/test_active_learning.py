@@ -80,6 +80,12 @@ def test_any_and_all_of_several_limits_have_closed_forms(method):
         assert as_json(ds)["combination"] == "all"
 
 
+def test_all_of_several_limits_are_learnt_as_one_event():
+    within = [("sum", 4.264891, "above"), ("sum", 4.753424, "below")]
+    ds = rare_event(branches(), all_of=within, method="active", samples=150, workers=0)
+    assert covers(ds, 0.9e-5) and int(ds["contradicted"]) <= 2
+
+
 def test_limits_of_outputs_of_different_scale_are_one_event():
     of = study("exponential-wear", WEAR)
     early, late = LIFE.ppf(1e-4), LIFE.isf(1e-5)
