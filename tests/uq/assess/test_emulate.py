@@ -144,7 +144,7 @@ def test_noise_alone_is_refused_and_the_rest_is_kept():
 def test_lives_regimes_and_undefined_values_are_classified():
     rows = kinds(samples=300)
     emulator = api.emulate(rows, outputs=["life", "angle", "regime"])
-    assert not emulator.refused
+    assert not emulator.refused and all(fit.logarithmic for fit in emulator.elements["life"])
     new = kinds(samples=1000)
     x = np.column_stack([new["x1"], new["x2"]])[400:]
     batch = EmulatedRows(emulator, ("x1", "x2"))

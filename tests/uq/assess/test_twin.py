@@ -296,4 +296,4 @@ def test_the_interval_of_a_mean_covers_where_few_rows_decide_the_regression():
         here, many = ((1 + u + u**2 / 2)[:, None] for u in (z, others))
         estimate, _ = controlled_mean(np.exp(z), np.ones(100, bool), controls=here, many=many)
         inside += estimate.low <= np.exp(0.32) <= estimate.high
-    assert inside >= 930  # 910 by the residuals of all rows
+    assert inside >= 937  # 934 without allowing for outliers, 910 by the residuals of all rows

@@ -135,3 +135,13 @@ def test_no_row_is_proposed_twice():
     few = Result(waves(50))
     scores, _ = _proposed(few, _study_of(few, None), 500, Aim("y", 17.0))
     assert len(np.unique(scores, axis=0)) == 500
+
+
+def test_a_limit_that_no_life_has_is_one_line():
+    wear = {
+        "study": {"name": "wear", "model": "exponential-wear"},
+        "uncertain": {"rate": {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}},
+    }
+    ds = computed(study_of(wear | design(40)))
+    with pytest.raises(InputError, match="next rows: -1 is no life"):
+        api.next_rows(ds, 20, "life", near=-1.0)
