@@ -31,8 +31,8 @@ from uq.result.elements import flags
 from uq.result.result import AnyResult, Result
 from uq.stats.regressions import (
     PROCESS,
-    Inputs,
     Regression,
+    ScaledInputs,
     openturns,
     regress,
     scale_of,
@@ -176,7 +176,7 @@ def _inputs(ds: xr.Dataset) -> tuple[dict[str, Floats], dict[str, str]]:
     return varying, equal
 
 
-def _fits(ds: xr.Dataset, name: str, output: Output, inputs: Inputs) -> list[ElementFit]:
+def _fits(ds: xr.Dataset, name: str, output: Output, inputs: ScaledInputs) -> list[ElementFit]:
     """Return the fits of all elements of an output.
 
     Raises
@@ -206,7 +206,7 @@ def _fits(ds: xr.Dataset, name: str, output: Output, inputs: Inputs) -> list[Ele
 
 
 def _of_category(
-    codes: NDArray[Any], labels: list[str], index: tuple[int, ...], inputs: Inputs
+    codes: NDArray[Any], labels: list[str], index: tuple[int, ...], inputs: ScaledInputs
 ) -> ElementFit:
     if (codes < 0).any():
         raise Refused("some rows have no label")
@@ -221,7 +221,7 @@ def _of_number(
     values: Floats,
     censored: NDArray[np.bool_],
     index: tuple[int, ...],
-    inputs: Inputs,
+    inputs: ScaledInputs,
 ) -> ElementFit:
     states = [VALUE, NEVER, CENSORED, UNDEFINED]
     state = np.select([censored, np.isposinf(values), np.isnan(values)], [2, 1, 3], 0)
@@ -273,7 +273,7 @@ def check(regression: Regression) -> None:
 
 
 def _classifier(
-    codes: NDArray[np.int64], numbers: list[int], labels: list[str], inputs: Inputs
+    codes: NDArray[np.int64], numbers: list[int], labels: list[str], inputs: ScaledInputs
 ) -> Classifier:
     """Return a classifier of rows by codes, of which `numbers` occur, with their labels.
 

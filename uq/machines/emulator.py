@@ -25,7 +25,7 @@ from uq.errors import InputError
 from uq.files.whole_files import file_there
 from uq.machines.row_by_row import NoSettings
 from uq.sampling.unit_cube import hashed, uniform
-from uq.stats.regressions import FOLDS, Inputs, Predictor, Regression, Scale, scaled
+from uq.stats.regressions import FOLDS, Predictor, Regression, Scale, ScaledInputs, scaled
 from uq.text.numbers import number
 
 FORMAT = 1
@@ -171,9 +171,9 @@ def parts_of(x: Floats) -> NDArray[np.int64]:
     return (hashed(x) % np.uint64(FOLDS)).astype(np.int64)
 
 
-def inputs_of(scales: list[Scale], x: Floats) -> Inputs:
+def inputs_of(scales: list[Scale], x: Floats) -> ScaledInputs:
     """Return the inputs of the regressions of an emulator, from their values, shape (n, d)."""
-    return Inputs(scaled(scales, x), parts_of(x), tuple(scale.uniform for scale in scales))
+    return ScaledInputs(scaled(scales, x), parts_of(x), tuple(scale.uniform for scale in scales))
 
 
 @dataclass(frozen=True)

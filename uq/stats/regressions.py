@@ -357,7 +357,7 @@ class Regression(NamedTuple):
         return self.sd * float(np.sqrt(np.mean(np.square(self.errors))))
 
 
-class Inputs(NamedTuple):
+class ScaledInputs(NamedTuple):
     """Inputs of the rows of an emulator.
 
     Attributes
@@ -381,11 +381,11 @@ class Predictor:
     Parameters
     ----------
     regression : Regression
-    inputs : Inputs
+    inputs : ScaledInputs
         Of all rows of the emulator.
     """
 
-    def __init__(self, regression: Regression, inputs: Inputs):
+    def __init__(self, regression: Regression, inputs: ScaledInputs):
         self.regression = regression
         rows = np.array(regression.rows)
         self._inputs = inputs._replace(z=inputs.z[rows], parts=inputs.parts[rows])
@@ -414,13 +414,16 @@ class Predictor:
 
 
 def regress(
-    inputs: Inputs, y: Floats, rows: NDArray[np.int64], kinds: tuple[str, ...] = (CHAOS, PROCESS)
+    inputs: ScaledInputs,
+    y: Floats,
+    rows: NDArray[np.int64],
+    kinds: tuple[str, ...] = (CHAOS, PROCESS),
 ) -> Regression:
     """Return the kind of regression that predicts parts of the rows best from the others.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : ScaledInputs
         Of all rows of the emulator.
     y : ndarray, shape (n,)
         Not constant.

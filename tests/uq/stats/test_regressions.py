@@ -7,8 +7,8 @@ from uq.stats.regressions import (
     CHAOS,
     FOLDS,
     PROCESS,
-    Inputs,
     Predictor,
+    ScaledInputs,
     process_of,
     regress,
     scale_of,
@@ -18,7 +18,7 @@ RNG = np.random.default_rng(1)
 Z = RNG.uniform(-1, 1, (80, 2))
 Y = np.sin(2 * Z[:, 0]) + Z[:, 0] * Z[:, 1]
 PARTS = np.arange(80) % FOLDS
-INPUTS = Inputs(Z, PARTS, (True, True))
+INPUTS = ScaledInputs(Z, PARTS, (True, True))
 
 
 @pytest.mark.parametrize("kind", [CHAOS, PROCESS])
