@@ -80,10 +80,15 @@ LIMITS = Model(
 )
 
 FOUR = {"any_of": [(f"branch{i}", SHIFT, "above") for i in range(1, 5)]}
+EDGE = stats.norm.isf(RARE**0.5)
+BOTH = {
+    "all_of": [("sum", EDGE, "above"), ("branch3", math.sqrt(2) * EDGE - 7 / math.sqrt(2), "above")]
+}
 CLIFF = stats.norm.sf(4.0) + stats.norm.sf(5.0)
 CASES = {
     "four branches": (2, {"output": "branches", "threshold": SHIFT}, RARE),
     "four branches, any of four limits": (2, FOUR, RARE),
+    "corner, all of two limits": (2, BOTH, RARE),
     "plane of six inputs": (6, {"output": "total", "threshold": stats.norm.isf(RARE)}, RARE),
     "stair": (2, {"output": "stair", "threshold": 4.5}, stats.norm.sf(4.75)),
     "cliff of one of two inputs": (2, {"output": "cliff", "threshold": 5.0}, CLIFF),

@@ -24,7 +24,7 @@ from contextlib import suppress
 from pathlib import Path
 
 FOLDER = "FAKE_QUEUE"
-LATE_SECONDS = 2.0
+LATE_SECONDS = 1.0
 _POLL_SECONDS = 0.02
 
 

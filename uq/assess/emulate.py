@@ -23,8 +23,8 @@ from uq.machines.emulator import (
     Classifier,
     ElementFit,
     Emulator,
+    inputs_of,
     most_likely,
-    parts_of,
     text_of,
 )
 from uq.result.elements import flags
@@ -32,10 +32,10 @@ from uq.result.result import AnyResult, Result
 from uq.stats.regressions import (
     PROCESS,
     Regression,
+    ScaledInputs,
     openturns,
     regress,
     scale_of,
-    scaled,
     standard_moment,
 )
 from uq.study.definition import study_from_text
@@ -59,7 +59,7 @@ _MOST_ELEMENTS = 50
 _RATIO = 10.0  # of largest to smallest value from which logarithms are fitted
 
 
-class _Refused(Exception):
+class Refused(Exception):
     """Raised with the reason why an output has no emulator."""
 
 
@@ -126,15 +126,14 @@ def emulate(
         raise InputError(f"{counted(len(rows), 'row')}: an emulator needs {FEWEST} at least")
     scales = [scale_of(name, values) for name, values in varying.items()]
     x = np.column_stack(list(varying.values()))
-    z = scaled(scales, x)
-    parts, uniform = parts_of(x), tuple(scale.uniform for scale in scales)
+    inputs = inputs_of(scales, x)
     elements, refused = dict[str, list[ElementFit]](), dict[str, str]()
     companions = {cause_name(name) for name, output in rows.outputs.items() if output.is_lifetime}
     for name in names:
         if name not in companions:
             try:
-                elements[name] = _fits(ds, name, rows.outputs[name], z, parts, uniform)
-            except _Refused as refusal:
+                elements[name] = _fits(ds, name, rows.outputs[name], inputs)
+            except Refused as refusal:
                 refused[name] = str(refusal)
     emulator = Emulator(
         _source(ds, x),
@@ -177,25 +176,18 @@ def _inputs(ds: xr.Dataset) -> tuple[dict[str, Floats], dict[str, str]]:
     return varying, equal
 
 
-def _fits(
-    ds: xr.Dataset,
-    name: str,
-    output: Output,
-    z: Floats,
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
-) -> list[ElementFit]:
+def _fits(ds: xr.Dataset, name: str, output: Output, inputs: ScaledInputs) -> list[ElementFit]:
     """Return the fits of all elements of an output.
 
     Raises
     ------
-    _Refused
+    Refused
     """
     sizes = [ds.sizes[dim] for dim in output.dims]
     if prod(sizes) > _MOST_ELEMENTS:
-        raise _Refused(f"has {prod(sizes)} elements; {_MOST_ELEMENTS} are the most")
+        raise Refused(f"has {prod(sizes)} elements; {_MOST_ELEMENTS} are the most")
     if output.may_be_between:
-        raise _Refused("some lives are known within an interval only")
+        raise Refused("some lives are known within an interval only")
     values = ds[name].values
     flag = censored_name(name)
     censored = ds[flag].values.astype(bool) if flag in ds else np.zeros(values.shape, bool)
@@ -205,27 +197,22 @@ def _fits(
         at: Any = (slice(None), *index)
         try:
             if output.is_category:
-                fits.append(_of_category(values[at], labels, index, z, parts, uniform))
+                fits.append(_of_category(values[at], labels, index, inputs))
             else:
-                fits.append(_of_number(output, values[at], censored[at], index, z, parts, uniform))
-        except _Refused as refusal:
-            raise _Refused(f"{label}: {refusal}" if sizes else str(refusal)) from None
+                fits.append(_of_number(output, values[at], censored[at], index, inputs))
+        except Refused as refusal:
+            raise Refused(f"{label}: {refusal}" if sizes else str(refusal)) from None
     return fits
 
 
 def _of_category(
-    codes: NDArray[Any],
-    labels: list[str],
-    index: tuple[int, ...],
-    z: Floats,
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
+    codes: NDArray[Any], labels: list[str], index: tuple[int, ...], inputs: ScaledInputs
 ) -> ElementFit:
     if (codes < 0).any():
-        raise _Refused("some rows have no label")
+        raise Refused("some rows have no label")
     present = np.unique(codes).tolist()
     occurring = [labels[code] for code in present]
-    classifier = _classifier(codes, present, occurring, z, parts, uniform)
+    classifier = _classifier(codes, present, occurring, inputs)
     return ElementFit(list(index), False, inf, None, classifier)
 
 
@@ -234,72 +221,65 @@ def _of_number(
     values: Floats,
     censored: NDArray[np.bool_],
     index: tuple[int, ...],
-    z: Floats,
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
+    inputs: ScaledInputs,
 ) -> ElementFit:
     states = [VALUE, NEVER, CENSORED, UNDEFINED]
     state = np.select([censored, np.isposinf(values), np.isnan(values)], [2, 1, 3], 0)
     present = [code for code in range(4) if (state == code).any()]
     rows = np.flatnonzero(state == 0)
     if len(rows) < FEWEST:
-        raise _Refused(f"{counted(len(rows), 'row')} with a value; {FEWEST} are needed")
+        raise Refused(f"{counted(len(rows), 'row')} with a value; {FEWEST} are needed")
     y = values[rows]
     if not np.ptp(y) > 0:
-        raise _Refused("has the same value in all rows")
+        raise Refused("has the same value in all rows")
     if output.is_lifetime and not y.min() > 0:
-        raise _Refused("some lives are zero, which have no logarithm")
+        raise Refused("some lives are zero, which have no logarithm")
     candidates = []
     spans = bool(y.min() > 0 and y.max() > _RATIO * y.min())
     for logarithmic in [True] if output.is_lifetime else [False, True][: 1 + spans]:
         t = np.log(y) if logarithmic else y
-        regression = regress(z[rows], t, rows, parts[rows], uniform)
+        regression = regress(inputs, t, rows)
         missed = t - regression.sd * np.array(regression.errors)
         errors = y - np.exp(np.minimum(missed, 690.0)) if logarithmic else y - missed
         candidates.append((float(np.mean(errors**2)), logarithmic, regression))
     _, logarithmic, regression = min(candidates, key=lambda candidate: candidate[0])
-    _check(regression)
+    check(regression)
     classifier = None
     if len(present) > 1:
         labels = [states[code] for code in present]
-        classifier = _classifier(state, present, labels, z, parts, uniform)
+        classifier = _classifier(state, present, labels, inputs)
     horizon = float(values[censored].min()) if censored.any() else inf
     return ElementFit(list(index), logarithmic, horizon, regression, classifier)
 
 
-def _check(regression: Regression) -> None:
+def check(regression: Regression) -> None:
     """Refuse a regression that errs too much, or whose output jumps.
 
     A jump leaves few large errors on its two sides, noise many small ones.
     """
     error = (1 - regression.q2) ** 0.5 if regression.q2 < 1 else 0.0
     if error > LARGEST_ERROR:
-        raise _Refused(
+        raise Refused(
             f"its error is {percent(error)} of the standard deviation of the output; a third is the"
             " most"
         )
     z = np.array(regression.errors)
     largest = float(np.abs(z).max() / z.std()) * error if z.std() else 0.0
     if largest > _LARGEST_OF_A_ROW and standard_moment(z, 4) > _FLAT:
-        raise _Refused(
+        raise Refused(
             f"a row is missed by {percent(largest)} of the standard deviation of the output, the"
             f" others by {percent(error)}: the output jumps, or is too steep for these rows"
         )
 
 
 def _classifier(
-    codes: NDArray[np.int64],
-    numbers: list[int],
-    labels: list[str],
-    z: Floats,
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
+    codes: NDArray[np.int64], numbers: list[int], labels: list[str], inputs: ScaledInputs
 ) -> Classifier:
     """Return a classifier of rows by codes, of which `numbers` occur, with their labels.
 
     Raises
     ------
-    _Refused
+    Refused
         When it errs too often.
     """
     count, rows = len(labels), np.arange(len(codes))
@@ -307,7 +287,7 @@ def _classifier(
     regressions, scores = list[Regression](), list[Floats]()
     for code in range(count if count > 2 else count - 1):
         indicator = 1.0 * (codes == code)
-        regression = regress(z, indicator, rows, parts, uniform, (PROCESS,))
+        regression = regress(inputs, indicator, rows, (PROCESS,))
         regressions.append(regression)
         scores.append(indicator - regression.sd * np.array(regression.errors))
     if not scores:
@@ -317,7 +297,7 @@ def _classifier(
     np.add.at(confusion, (predicted, codes), 1)
     classifier = Classifier(labels, numbers, regressions, confusion.tolist())
     if classifier.error > LARGEST_ERROR * classifier.ignorance:
-        raise _Refused(
+        raise Refused(
             f"{percent(classifier.error)} of rows would get the wrong label of"
             f" {', '.join(labels)}; always the most frequent one, {percent(classifier.ignorance)}"
         )
@@ -378,7 +358,7 @@ def emulator_facts(emulator: Emulator) -> Fact:
     outputs = {
         name: Fact(_numbers(fits), (regress,)) for name, fits in emulator.elements.items()
     } | {
-        name: Fact({"kind": None, "q2": None, "error_sd": None, "refused": why}, (_check,))
+        name: Fact({"kind": None, "q2": None, "error_sd": None, "refused": why}, (check,))
         for name, why in emulator.refused.items()
     }
     members = {"rows": len(emulator.x), "failed": emulator.failed, "outputs": outputs}

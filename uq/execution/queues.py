@@ -35,6 +35,7 @@ from uq.execution.options import Say
 from uq.execution.workers import Workers, quiet
 from uq.files.interrupts import undone
 from uq.machines.queue_table import QueueTable
+from uq.machines.row_resources import ROWS_OF_JOB
 from uq.result.workload import Workload
 
 if TYPE_CHECKING:
@@ -93,28 +94,31 @@ def queued_workers(
     if " " in str(file):
         raise InputError(f"{file}: the files of a job cannot be in a folder with blanks")
     kind = _kind_of_cluster(table.system, where)
-    logs = tempfile.mkdtemp(prefix=f"{workload.model.name}.jobs-", dir=file.parent)  # private
+    logs = Path(tempfile.mkdtemp(prefix=f"{workload.model.name}.jobs-", dir=file.parent))  # private
+    rows = logs / "rows"
+    rows.mkdir()
     death = f"its job died each time: killed, or at its walltime {table.walltime}; see {logs}"
-    options = _SERVER | {"log_directory": logs, "security": _secured(Path(logs))}
+    options = _SERVER | {"log_directory": str(logs), "security": _secured(logs)}
+    crew: Workers | None = None
+    queue: _Queue | None = None
+
+    def tidy() -> None:
+        lost = (crew.given_up if crew is not None else 0) + (queue.wasted if queue else 0)
+        shutil.rmtree(rows if lost else logs, ignore_errors=True)
+
     with ExitStack() as stack:
+        stack.enter_context(undone(tidy))  # a cluster makes the folder again when it closes
         stack.enter_context(quiet())
         stack.enter_context(dask.config.set(_SCHEDULER))
         try:
-            job = job_options(table) | {"job_name": f"uq-{workload.model.name}"}
+            job = job_options(table, rows) | {"job_name": f"uq-{workload.model.name}"}
             cluster = stack.enter_context(kind(**options, **job))
         except (RuntimeError, ValueError) as error:  # such as of its interface
-            shutil.rmtree(logs, ignore_errors=True)
             raise InputError(f"{where}: {one_line(error)}") from None
         queue = _Queue(cluster, table.system, jobs, where, say)
         client = stack.enter_context(client_of(cluster))
         crew = Workers(client, workload, row_limit, keep_up=queue.keep_up, death=death)
-
-        def end() -> None:
-            queue.end()
-            if not (crew.given_up or queue.wasted):
-                shutil.rmtree(logs, ignore_errors=True)
-
-        stack.enter_context(undone(end))
+        stack.enter_context(undone(queue.end))
         yield crew
 
 
@@ -151,8 +155,15 @@ def _secured(folder: Path) -> Security:
     return Security(require_encryption=True, tls_ca_file=str(files["cert"]), **roles)
 
 
-def job_options(table: QueueTable) -> dict[str, Any]:
-    """Return the options of a cluster of dask-jobqueue with one worker of one thread per job."""
+def job_options(table: QueueTable, rows: Path) -> dict[str, Any]:
+    """Return the options of a cluster of dask-jobqueue with one worker of one thread per job.
+
+    Parameters
+    ----------
+    table : QueueTable
+    rows : Path
+        Folder in which jobs compute their rows.
+    """
     cores, nodes = table.cores, table.nodes
     options: dict[str, Any] = {"walltime": table.walltime, "account": table.account or None}
     directives, skipped = list[str](), list[str]()
@@ -178,7 +189,8 @@ def job_options(table: QueueTable) -> dict[str, Any]:
         "job_extra_directives": [*directives, *table.directives],
         "job_directives_skip": skipped,
         "job_script_prologue": [
-            f"export OMP_NUM_THREADS={cores} PYTHONPATH={quote(inherited()['PYTHONPATH'])}",
+            f"export OMP_NUM_THREADS={cores} PYTHONPATH={quote(inherited()['PYTHONPATH'])}"
+            f" {ROWS_OF_JOB}={quote(str(rows))}",
             *table.prologue,
         ],
         # The last of two options counts: cores and memory are those of the program.

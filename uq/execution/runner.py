@@ -23,7 +23,7 @@ from uq.files import whole_files
 from uq.result import result_file
 from uq.result.result import Result
 from uq.result.result_file import with_model
-from uq.result.weights import has_weights
+from uq.result.weights import has_weights, weighted_by
 from uq.result.workload import Workload, workload_of
 from uq.study.definition import Study, refusal_to_extend, what_changed
 from uq.study.hints import hints
@@ -143,7 +143,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     remedy = "choose another output, or overwrite it with --fresh"
     ds = result_file.open_result(path, remedy)
     if has_weights(ds):
-        raise InputError(f"{path}: has rows that inspections have weighted; {remedy}")
+        raise InputError(f"{path}: has rows that {weighted_by(ds)}; {remedy}")
     if ds.attrs["study_identity"] != study.identity:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
         raise InputError(f"{path}: has the result of another study ({change}); {remedy}")

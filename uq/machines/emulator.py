@@ -25,7 +25,7 @@ from uq.errors import InputError
 from uq.files.whole_files import file_there
 from uq.machines.row_by_row import NoSettings
 from uq.sampling.unit_cube import hashed, uniform
-from uq.stats.regressions import FOLDS, Predictor, Regression, Scale, scaled
+from uq.stats.regressions import FOLDS, Predictor, Regression, Scale, ScaledInputs, scaled
 from uq.text.numbers import number
 
 FORMAT = 1
@@ -140,18 +140,12 @@ class Emulator:
     failed: int = 0
 
     @cached_property
-    def uniform(self) -> tuple[bool, ...]:
-        """Whether each input of the regressions is uniform."""
-        return tuple(scale.uniform for scale in self.scales)
-
-    @cached_property
     def predictors(self) -> dict[str, list[tuple[ElementFit, Predictor | None, list[Predictor]]]]:
         """The fits of each element with their predictions, by output."""
-        x = np.array(self.x)
-        z, parts = scaled(self.scales, x), parts_of(x)
+        inputs = inputs_of(self.scales, np.array(self.x))
 
         def prepared(regression: Regression) -> Predictor:
-            return Predictor(regression, z, parts, self.uniform)
+            return Predictor(regression, inputs)
 
         return {
             name: [
@@ -175,6 +169,11 @@ def parts_of(x: Floats) -> NDArray[np.int64]:
         Inputs of the regressions.
     """
     return (hashed(x) % np.uint64(FOLDS)).astype(np.int64)
+
+
+def inputs_of(scales: list[Scale], x: Floats) -> ScaledInputs:
+    """Return the inputs of the regressions of an emulator, from their values, shape (n, d)."""
+    return ScaledInputs(scaled(scales, x), parts_of(x), tuple(scale.uniform for scale in scales))
 
 
 @dataclass(frozen=True)
@@ -431,12 +430,11 @@ def _parameters_of(emulator: Emulator) -> type:
 
 
 def _other_settings(emulator: Emulator, choices: Mapping[str, Any]) -> str:
-    given = json.loads(json.dumps(choices))
-    for name in given:
-        if given.get(name) != emulator.settings.get(name):
+    for name, given in json.loads(json.dumps(choices)).items():
+        if given != (learnt := emulator.settings.get(name)):
             return (
-                f"[settings] {name}: the rows of the emulator were computed with"
-                f" {emulator.settings.get(name)!r}, not {given.get(name)!r}"
+                f"[settings] {name}: the rows of the emulator were computed with {learnt!r}, not"
+                f" {given!r}"
             )
     return ""
 

@@ -151,12 +151,18 @@ def _lighten(folder: Path, passing: str) -> None:
             left -= sizes[file]
 
 
+ROWS_OF_JOB = "VIBROLIFE_ROWS_OF_JOB"
+"""Environment variable of a job of a queue: the folder in which it computes its rows. The run
+removes it, as a job that is killed cannot."""
+
+
 class Folders:
     """The folders of the rows of a machine, in one folder.
 
     Parameters
     ----------
     root : Path
+        Where they are computed, but in a job, and where those that failed are kept.
     passing : str
         Name of a folder in each that is not kept.
     """
@@ -193,10 +199,17 @@ class Folders:
     def _new(self, numbers: Sequence[float | int]) -> Path:
         """Return a new folder of this process."""
         mine = f"{_running_on_this()}{judge()}-{os.getpid()}-{_digest(numbers)}-"
+        if self._running != self.root:  # it is not made again after the end of the run
+            return Path(tempfile.mkdtemp(prefix=mine, dir=self._running))
         while True:
             self.root.mkdir(parents=True, exist_ok=True)
             with suppress(FileNotFoundError):  # another process has just left
                 return Path(tempfile.mkdtemp(prefix=mine, dir=self.root))
+
+    @property
+    def _running(self) -> Path:
+        """Return the folder of rows that are computed."""
+        return Path(os.environ.get(ROWS_OF_JOB, self.root))
 
     def leave(self) -> None:
         """Remove folders that killed processes left, and the root if it is empty."""
@@ -211,7 +224,8 @@ class Folders:
     def keep(self, numbers: Sequence[float | int]) -> Path | None:
         """Keep the folder of a row that ended a child of this process; return its path."""
         kept = self.kept(numbers)
-        for folder in self.root.glob(f"{_running_on_this()}{os.getpid()}-*-{_digest(numbers)}-*"):
+        mine = f"{_running_on_this()}{os.getpid()}-*-{_digest(numbers)}-*"
+        for folder in self._running.glob(mine):
             self._keep(folder, numbers)
         return kept if kept.is_dir() else None
 
@@ -220,6 +234,7 @@ class Folders:
         shutil.rmtree(kept, ignore_errors=True)
         with suppress(OSError):
             _lighten(folder, self._passing)
+            self.root.mkdir(exist_ok=True)
             folder.rename(kept)
 
     def _tidy(self) -> None:
@@ -229,7 +244,7 @@ class Folders:
         """
         import psutil
 
-        for folder in self.root.glob(f"{_running_on_this()}*"):
+        for folder in self._running.glob(f"{_running_on_this()}*"):
             judge, pid, *_ = folder.name.removeprefix(_running_on_this()).split("-")
             mine = int(judge) == os.getpid()
             if not psutil.pid_exists(int(pid)) and (mine or not psutil.pid_exists(int(judge))):

@@ -150,12 +150,16 @@ def refuse_if_weighted(ds: xr.Dataset, question: str) -> None:
         When rows have weights.
     """
     if has_weights(ds):
-        by, verb = "inspections have weighted", "update"
-        if has_rounds(ds) and ds[ROUND].attrs.get(INDEPENDENT_ROUNDS):
-            by, verb = "have weights", "extend --next"
         raise InputError(
-            f"{question}: not with rows that {by}; ask it of the result before 'uq {verb}'"
+            f"{question}: not with rows that {weighted_by(ds)}; ask it of the result before"
         )
+
+
+def weighted_by(ds: xr.Dataset) -> str:
+    """Return what has weighted the rows of a result."""
+    if has_rounds(ds) and ds[ROUND].attrs.get(INDEPENDENT_ROUNDS):
+        return "have weights ('uq extend --next')"
+    return "inspections have weighted ('uq update')"
 
 
 _ROW, _TERM = "row", "term"

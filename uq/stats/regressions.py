@@ -3,7 +3,8 @@
 A regression is kept as plain numbers, from which it predicts the same bits in any process.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -25,9 +26,13 @@ MOST_OF_PROCESS = 600
 _FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estimated
 _DEGREE = 16
 _NUGGET = 0.01  # from which its estimate starts
+_NUGGETS = (1e-6, 1e-4, 1e-2)  # with which a covariance is factorised in the end
 _ROWS_PER_TERM = (4.0, 2.0, 1.0, 0.5)  # among which terms are selected
 _RATIO = 3.0  # of largest to smallest value from which logarithms may be used
 _FLAT = 2.2  # kurtosis below which a column counts as uniform; 1.8 of a uniform law
+
+Fit = dict[str, Any]
+"""Plain numbers from which a regression predicts."""
 
 Predict = Callable[[Floats], tuple[Floats, Floats]]
 """Scaled inputs, shape (n, d) -> means, and standard deviations up to a factor, shape (n,) each."""
@@ -118,7 +123,7 @@ def _basis(uniform: tuple[bool, ...]) -> Any:
     )
 
 
-def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> dict[str, Any]:
+def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Fit:
     """Return a sparse polynomial chaos expansion: its polynomials and their coefficients.
 
     Terms are selected by least angle regression and the corrected leave-one-out error [1]_, from
@@ -156,7 +161,7 @@ def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> dict[str, Any]
 
 
 def components(
-    fit: Mapping[str, Any], z: Floats, uniform: tuple[bool, ...]
+    fit: Fit, z: Floats, uniform: tuple[bool, ...]
 ) -> dict[tuple[int, ...], tuple[float, Floats]]:
     """Return the parts of an expansion that depend on the same inputs, as in an ANOVA.
 
@@ -184,7 +189,7 @@ def components(
     return parts
 
 
-def _chaos(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
+def _chaos(fit: Fit, z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
     ot = openturns()
     basis = _basis(uniform)
     polynomials = [basis.build(i) for i in fit["terms"]]
@@ -196,16 +201,12 @@ def _chaos(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ..
     return predict
 
 
-def _kernel(scale: list[float], amplitude: float, nugget: float | None = None) -> Any:
-    kernel = openturns().MaternModel(scale, [amplitude], 2.5)
-    if nugget is not None:
-        kernel.setNuggetFactor(nugget)
-        kernel.activateNuggetFactor(True)
-    return kernel
-
-
-def _process_fitter(z: Floats, y: Floats, kernel: Any) -> Any:
+def _process_fitter(z: Floats, y: Floats, fit: Fit) -> Any:
     ot = openturns()
+    kernel = ot.MaternModel(fit["scale"], [fit["amplitude"]], 2.5)
+    if "nugget" in fit:
+        kernel.setNuggetFactor(fit["nugget"])
+        kernel.activateNuggetFactor(True)
     trend = ot.ConstantBasisFactory(z.shape[1]).build()
     return ot.GaussianProcessFitter(ot.Sample(z), ot.Sample(y[:, None]), kernel, trend)
 
@@ -215,40 +216,53 @@ def fit_process(
     y: Floats,
     uniform: tuple[bool, ...],
     noisy: bool = False,
-    start: Mapping[str, Any] | None = None,
-) -> dict[str, Any]:
+    start: Fit | None = None,
+) -> Fit:
     """Return the most likely Gaussian process: a Matern 5/2 kernel, its scales and sd.
 
     They are estimated from the first 150 rows: the cost grows with the cube of their number. The
     variance of `noisy` rows about the process, relative to its own, is estimated, too (a nugget).
-    The search begins at an earlier estimate, `start`, if there is one.
+    The search begins at an earlier estimate, `start`, if there is one; it is the estimate if
+    OpenTURNS cannot find a better one.
     """
     ot = openturns()
     d = z.shape[1]
     start = start or {"scale": [1.0] * d, "amplitude": 1.0} | ({"nugget": _NUGGET} if noisy else {})
-    fitter = _process_fitter(z[:_FOR_SCALES], y[:_FOR_SCALES], _kernel(**start))
     search = ot.Cobyla()
     search.setMaximumCallsNumber(300)
     search.setMaximumAbsoluteError(1e-3)
     search.setMaximumRelativeError(1e-3)
     search.setCheckStatus(False)
-    fitter.setOptimizationAlgorithm(search)
     low, high = ([1e-8], [10.0]) if noisy else ([], [])
-    fitter.setOptimizationBounds(ot.Interval([0.02] * d + low, [50.0] * d + high))
-    fitter.run()
-    kernel = fitter.getResult().getCovarianceModel()
-    fit = {"scale": list(kernel.getScale()), "amplitude": kernel.getAmplitude()[0]}
-    return fit | ({"nugget": kernel.getNuggetFactor()} if noisy else {})
+    with suppress(RuntimeError):
+        fitter = _process_fitter(z[:_FOR_SCALES], y[:_FOR_SCALES], start)
+        fitter.setOptimizationAlgorithm(search)
+        fitter.setOptimizationBounds(ot.Interval([0.02] * d + low, [50.0] * d + high))
+        fitter.run()
+        kernel = fitter.getResult().getCovarianceModel()
+        fit = {"scale": list(kernel.getScale()), "amplitude": kernel.getAmplitude()[0]}
+        return fit | ({"nugget": kernel.getNuggetFactor()} if noisy else {})
+    return start
 
 
-def process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
-    """Return the prediction of the Gaussian process of `fit_process`, conditioned on rows."""
+def process(fit: Fit, z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Predict:
+    """Return the prediction of the Gaussian process of `fit_process`, conditioned on rows.
+
+    If OpenTURNS cannot factorise their covariance, as of rows that are close together, the nugget
+    is increased.
+    """
     ot = openturns()
-    fitter = _process_fitter(z, y, _kernel(**fit))
-    fitter.setOptimizeParameters(False)
-    fitter.run()
-    regression = ot.GaussianProcessRegression(fitter.getResult())
-    regression.run()
+    nuggets = [{"nugget": max(nugget, fit.get("nugget", 0.0))} for nugget in _NUGGETS]
+    for change in ({}, *nuggets):
+        with suppress(RuntimeError):
+            fitter = _process_fitter(z, y, fit | change)
+            fitter.setOptimizeParameters(False)
+            fitter.run()
+            regression = ot.GaussianProcessRegression(fitter.getResult())
+            regression.run()
+            break
+    else:
+        raise InputError("no Gaussian process fits the rows")
     mean = regression.getResult().getMetaModel()
     covariance = ot.GaussianProcessConditionalCovariance(regression.getResult())
 
@@ -259,23 +273,44 @@ def process(fit: Mapping[str, Any], z: Floats, y: Floats, uniform: tuple[bool, .
     return predict
 
 
-def process_at(z: Floats, y: Floats, at: Floats) -> tuple[Floats, Floats]:
-    """Return means and standard deviations of a Gaussian process of rows at points, (n,) each.
+def process_of(
+    z: Floats,
+    y: Floats,
+    noisy: bool = False,
+    start: Fit | None = None,
+    renewed: bool = True,
+) -> tuple[Fit, Predict]:
+    """Return a Gaussian process of rows, and its prediction in the unit of the output.
 
     Parameters
     ----------
-    z : ndarray, shape (rows, d)
-    y : ndarray, shape (rows,)
-        Standardised.
-    at : ndarray, shape (n, d)
+    z : ndarray, shape (n, d)
+        Scaled inputs.
+    y : ndarray, shape (n,)
+        Not constant.
+    noisy, start
+        As for `fit_process`.
+    renewed : bool
+        Whether to estimate its scales again if there is a `start`.
     """
-    uniform = (False,) * z.shape[1]
-    return process(fit_process(z, y, uniform), z, y, uniform)(at)
+    flat, centre, sd = (False,) * z.shape[1], float(y.mean()), float(y.std())
+    t = (y - centre) / sd
+    fit = fit_process(z, t, flat, noisy, start) if renewed or start is None else start
+    predict = process(fit, z, t, flat)
+
+    def predicted(at: Floats) -> tuple[Floats, Floats]:
+        mean, error = predict(at)
+        return centre + sd * mean, sd * error
+
+    return fit, predicted
 
 
 CHAOS, PROCESS = "polynomial-chaos", "gaussian-process"
 
-_KINDS = {CHAOS: (fit_chaos, _chaos), PROCESS: (fit_process, process)}
+_KINDS: dict[str, tuple[Callable[..., Fit], Callable[..., Predict]]] = {
+    CHAOS: (fit_chaos, _chaos),
+    PROCESS: (fit_process, process),
+}
 """Kind of regression -> its fit, and its prediction from plain numbers."""
 
 
@@ -306,8 +341,8 @@ class Regression(NamedTuple):
     values: list[float]
     mean: float
     sd: float
-    fit: dict[str, Any]
-    folds: list[dict[str, Any]]
+    fit: Fit
+    folds: list[Fit]
     errors: list[float]
     deviations: list[float]
 
@@ -322,35 +357,48 @@ class Regression(NamedTuple):
         return self.sd * float(np.sqrt(np.mean(np.square(self.errors))))
 
 
+class ScaledInputs(NamedTuple):
+    """Inputs of the rows of an emulator.
+
+    Attributes
+    ----------
+    z : ndarray, shape (rows, d)
+        Scaled.
+    parts : ndarray of int, shape (rows,)
+        Part of each row.
+    uniform : tuple of bool
+        Whether each input is uniform.
+    """
+
+    z: Floats
+    parts: NDArray[np.int64]
+    uniform: tuple[bool, ...]
+
+
 class Predictor:
     """Predictions of a regression, prepared when they are first needed.
 
     Parameters
     ----------
     regression : Regression
-    z : ndarray, shape (rows, d)
-        Scaled inputs of all rows of the emulator.
-    parts : ndarray of int, shape (rows,)
-    uniform : tuple of bool
-        Of each input.
+    inputs : ScaledInputs
+        Of all rows of the emulator.
     """
 
-    def __init__(
-        self, regression: Regression, z: Floats, parts: NDArray[np.int64], uniform: tuple[bool, ...]
-    ):
-        self.regression, self._uniform = regression, uniform
+    def __init__(self, regression: Regression, inputs: ScaledInputs):
+        self.regression = regression
         rows = np.array(regression.rows)
-        self._z, self._parts = z[rows], parts[rows]
+        self._inputs = inputs._replace(z=inputs.z[rows], parts=inputs.parts[rows])
         self._y = np.array(regression.values)
         self._part = cache(self._prepared)
         self.standard_errors = np.array(regression.errors) / np.array(regression.deviations)
 
     def _prepared(self, part: int) -> Predict:
         """Return the prediction from all rows (-1), or from those of all parts but one."""
-        kept = self._parts != part
+        z, parts, uniform = self._inputs
+        kept = parts != part
         fit = self.regression.fit if part < 0 else self.regression.folds[part]
-        prediction = _KINDS[self.regression.kind][1]
-        return prediction(fit, self._z[kept], self._y[kept], self._uniform)
+        return _KINDS[self.regression.kind][1](fit, z[kept], self._y[kept], uniform)
 
     def __call__(self, z: Floats) -> tuple[Floats, Floats]:
         """Return means, and standard deviations up to a factor, shape (n,) each."""
@@ -366,35 +414,31 @@ class Predictor:
 
 
 def regress(
-    z: Floats,
+    inputs: ScaledInputs,
     y: Floats,
     rows: NDArray[np.int64],
-    parts: NDArray[np.int64],
-    uniform: tuple[bool, ...],
     kinds: tuple[str, ...] = (CHAOS, PROCESS),
 ) -> Regression:
     """Return the kind of regression that predicts parts of the rows best from the others.
 
     Parameters
     ----------
-    z : ndarray, shape (n, d)
-        Scaled inputs.
+    inputs : ScaledInputs
+        Of all rows of the emulator.
     y : ndarray, shape (n,)
         Not constant.
     rows : ndarray of int, shape (n,)
-        Positions among the rows of the emulator.
-    parts : ndarray of int, shape (n,)
-        Part of each row.
-    uniform : tuple of bool
+        Positions of its rows among those of the emulator.
     kinds : tuple of str
         A Gaussian process is left out where there are too many rows.
     """
+    z, parts, uniform = inputs.z[rows], inputs.parts[rows], inputs.uniform
     mean, sd = float(y.mean()), float(y.std())
     t = (y - mean) / sd
     candidates = list[Regression]()
     for kind in kinds if len(t) <= MOST_OF_PROCESS else (CHAOS,):
         fit, prediction = _KINDS[kind]
-        folds, errors = list[dict[str, Any]](), np.zeros(len(t))
+        folds, errors = list[Fit](), np.zeros(len(t))
         deviations = np.ones(len(t))
         for part in range(FOLDS):
             others, these = parts != part, parts == part

@@ -1,6 +1,7 @@
 """Emulators: what they predict, what they refuse, and that their errors are carried on."""
 
 import json
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -10,28 +11,29 @@ from computed import UNIFORM, computed, kinds, linear, study_of
 import uq as api
 from uq.contract import Status
 from uq.errors import InputError
-from uq.machines.emulator import EmulatedRows, emulator_at, parts_of
-from uq.study.installed_models import model_at
+from uq.explore.rare_events import rare_event
+from uq.machines.emulator import EmulatedRows, emulator_at, model_of_emulator, parts_of
+from uq.machines.serving import address_of, server_of
+from uq.study.installed_models import find_model, model_at
 
 PAIRED, SIGNS = "sample_models:PAIRED", {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 
 
-def ishigami(samples=200, seed=1, **analysis):
-    return computed(
-        study_of(
-            {
-                "study": {"name": "waves", "model": "ishigami"},
-                "design": {"method": "monte-carlo", "samples": samples, "seed": seed},
-                "uncertain": dict.fromkeys(("x1", "x2", "x3"), SIGNS),
-                "analysis": {"thresholds": {"y": 10.0}} | analysis,
-            }
-        )
-    )
+WAVES = {
+    "study": {"name": "waves", "model": "ishigami"},
+    "uncertain": dict.fromkeys(("x1", "x2", "x3"), SIGNS),
+    "analysis": {"thresholds": {"y": 10.0}},
+}
+
+
+def ishigami(samples=150, seed=1):
+    design = {"method": "monte-carlo", "samples": samples, "seed": seed}
+    return computed(study_of(WAVES | {"design": design}))
 
 
 @pytest.fixture(scope="module")
 def waves(tmp_path_factory):
-    """Return the file of an emulator of Ishigami's function from 200 rows."""
+    """Return the file of an emulator of Ishigami's function from 150 rows."""
     path = tmp_path_factory.mktemp("emulators") / "waves.emulator"
     api.emulate(ishigami(), path)
     return path
@@ -52,6 +54,9 @@ def test_new_rows_are_predicted_with_the_error_that_is_stated(waves):
     true = np.sqrt(np.mean((y - new["y"].values) ** 2))
     # An error is drawn and an error is made: their squares add up.
     assert 0.3 * stated < true < 2 * np.sqrt(2) * stated < 0.3 * float(new["y"].std())
+    # Two draws of the same rows differ by two errors.
+    drawn_twice = predicted(waves, x, seed=2000)[0]["y"] - y
+    assert np.std(drawn_twice) == pytest.approx(np.sqrt(2) * stated, rel=0.3)
 
 
 def test_rows_have_the_same_bits_one_by_one_and_in_another_process(waves, tmp_path):
@@ -61,7 +66,7 @@ def test_rows_have_the_same_bits_one_by_one_and_in_another_process(waves, tmp_pa
         together, [predicted(waves, x[i : i + 1], i)[0]["y"][0] for i in range(64)]
     )
     study = tmp_path / "again.toml"
-    text = ishigami().attrs["study"].replace("samples = 200", "samples = 300")
+    text = ishigami().attrs["study"].replace("samples = 150", "samples = 300")
     study.write_text(text)
     results = [
         api.run(api.load_study(study, str(waves)), tmp_path / f"{n}.nc", workers=n, chunk_rows=c)
@@ -71,6 +76,23 @@ def test_rows_have_the_same_bits_one_by_one_and_in_another_process(waves, tmp_pa
     assert results[0].attrs["model"] == "ishigami-emulator"
 
 
+def test_an_emulator_that_is_served_has_the_same_bits(waves):
+    x = np.random.default_rng(0).uniform(-3, 3, (5, 3))
+    server = server_of(model_at(str(waves)), port=0)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    address = address_of("127.0.0.1", server.server_address[1], "ishigami-emulator")
+    assert np.array_equal(predicted(address, x)[0]["y"], predicted(waves, x)[0]["y"])
+    server.shutdown()
+    server.server_close()
+
+
+def test_an_emulator_takes_events_of_several_limits(waves):
+    of = study_of(WAVES | {"design": {"method": "monte-carlo", "samples": 64}}, str(waves))
+    limits = [("y", 14.0, "above"), ("y", -8.0, "below")]
+    ds = rare_event(of, any_of=limits, samples=300, replicates=4, workers=0)
+    assert ds["low"] < 0.0089 < ds["high"] < 0.02  # of Ishigami's function: 0.0089
+
+
 def test_an_output_that_jumps_is_refused():
     ds = ishigami()
     for height in (3.0, 10.0):
@@ -78,6 +100,30 @@ def test_an_output_that_jumps_is_refused():
         jump["y"].attrs = ds["y"].attrs
         with pytest.raises(InputError, match="y: no emulator: "):
             api.emulate(jump)
+
+
+def test_a_jump_that_few_rows_cross_is_refused():
+    ds = ishigami()
+    jump = ds.assign(y=ds["x1"] + 2.0 * (ds["x2"] > 2.6))
+    jump["y"].attrs = ds["y"].attrs
+    with pytest.raises(InputError, match="the output jumps, or is too steep for these rows"):
+        api.emulate(jump)
+
+
+def test_labels_that_no_input_explains_are_refused():
+    ds = kinds(samples=80)
+    ds["regime"].values[:] = np.random.default_rng(0).permutation(ds["regime"].values)
+    with pytest.raises(InputError, match="of rows would get the wrong label"):
+        api.emulate(ds, outputs=["regime"])
+
+
+def test_failed_rows_are_not_learnt_and_few_rows_are_refused():
+    ds = linear(samples=64, settings={"fail_above": 0.9})
+    failed = int((ds["status"] != Status.OK).sum())
+    emulator = api.emulate(ds)
+    assert 0 < failed == emulator.failed and len(emulator.x) == 64 - failed
+    with pytest.raises(InputError, match="39 rows: an emulator needs 40 at least"):
+        api.emulate(linear(samples=39))
 
 
 def paired(samples=120):
@@ -96,14 +142,19 @@ def test_noise_alone_is_refused_and_the_rest_is_kept():
 
 
 def test_lives_regimes_and_undefined_values_are_classified():
-    rows = kinds(samples=400)
+    rows = kinds(samples=300)
     emulator = api.emulate(rows, outputs=["life", "angle", "regime"])
-    assert not emulator.refused
+    assert not emulator.refused and all(fit.logarithmic for fit in emulator.elements["life"])
     new = kinds(samples=1000)
     x = np.column_stack([new["x1"], new["x2"]])[400:]
     batch = EmulatedRows(emulator, ("x1", "x2"))
     columns, status, _ = batch(x, np.arange(600, dtype=np.uint64) * np.uint64(2**40), None)
     assert (status == Status.OK).all()
+    # Lives beyond the time at which rows were cut are censored.
+    flags = columns["life_censored"].reshape(600, -1).T
+    for life, cut in zip(columns["life"].reshape(600, -1).T, flags, strict=True):
+        assert len(set(life[cut])) == 1
+        assert not (life[~cut & np.isfinite(life)] > life[cut][0]).any()
     truth = new.isel(row=slice(400, None))
     assert np.mean(np.isposinf(columns["life"]) == np.isposinf(truth["life"].values)) > 0.95
     assert np.mean(columns["life_censored"] == truth["life_censored"].values) > 0.93
@@ -112,6 +163,17 @@ def test_lives_regimes_and_undefined_values_are_classified():
     ended = np.isfinite(columns["life"]) & np.isfinite(truth["life"].values)
     ended &= ~columns["life_censored"] & (truth["life_censored"].values == 0)
     assert columns["life"][ended] == pytest.approx(truth["life"].values[ended], rel=0.02)
+
+
+def test_labels_are_drawn_as_often_as_the_classifier_errs():
+    emulator = api.emulate(kinds(samples=80), outputs=["regime"])
+    classifier = emulator.elements["regime"][0].classifier
+    assert classifier.confusion == [[43, 1], [0, 36]]
+    x = np.tile([[0.1, 0.5], [0.9, 0.5]], (2000, 1))
+    seeds = np.arange(4000, dtype=np.uint64) * np.uint64(2**40)
+    regime = EmulatedRows(emulator, ("x1", "x2"))(x, seeds, None)[0]["regime"]
+    wrong = {regime[0::2].mean(), 1 - regime[1::2].mean()}
+    assert min(wrong) == 0.0 and max(wrong) == pytest.approx(1 / 44, abs=0.01)
 
 
 def test_rows_outside_those_learnt_fail_with_a_sentence(waves):
@@ -138,6 +200,43 @@ def test_other_constants_and_settings_are_refused(waves, tmp_path, uq):
         with pytest.raises(InputError, match=words):
             study_of(series | change, str(path))
     assert study_of(series, str(path)).model.name == "series-emulator"
+
+
+def test_other_settings_of_an_installed_model_are_refused(tmp_path):
+    tables = {
+        "study": {"name": "linear", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 64},
+        "uncertain": dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM),
+    }
+    path = tmp_path / "linear.emulator"
+    api.emulate(computed(study_of(tables)), path)
+    assert study_of(tables, str(path)).model.name == "linear-emulator"
+    with pytest.raises(InputError, match="fail_above: the rows of the emulator were computed with"):
+        study_of(tables | {"settings": {"fail_above": 0.9}}, str(path))
+
+
+def test_inputs_that_were_equal_must_stay_equal():
+    ds = linear(samples=64)
+    ds["y"] = ds["y"] + 4 * (ds["x3"] - ds["x4"])
+    ds["x4"] = ds["x3"].assign_attrs(ds["x4"].attrs)
+    ds["y"].attrs = linear(samples=64)["y"].attrs
+    emulator = api.emulate(ds)
+    assert emulator.equal == {"x4": "x3"}
+    x = np.full((2, 4), 0.5) + [[0, 0, 0, 0], [0, 0, 0, 0.1]]
+    batch = EmulatedRows(emulator, ("x1", "x2", "x3", "x4"))
+    columns, status, messages = batch(x, np.zeros(2, np.uint64), None)
+    assert columns["y"][0] == pytest.approx(5.0, abs=0.01)
+    assert status.tolist() == [Status.OK, Status.RAISED]
+    assert messages == {1: "x4 differs from x3; in the rows of the emulator it does not"}
+
+
+def test_as_a_twin_it_predicts_each_row_from_the_rows_of_other_parts(waves):
+    emulator, ds = emulator_at(waves), ishigami()
+    twin = model_of_emulator(emulator, "", find_model, cross_fitted=True)
+    x = np.column_stack([ds[name] for name in ("x1", "x2", "x3")])
+    errors = twin.batch(x, np.arange(150, dtype=np.uint64), None)[0]["y"] - ds["y"].values
+    stated = emulator.elements["y"][0].regression.error_sd
+    assert np.sqrt(np.mean(errors**2)) == pytest.approx(stated, rel=1e-9)
 
 
 @pytest.mark.slow

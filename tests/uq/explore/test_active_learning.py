@@ -11,10 +11,10 @@ from scipy import integrate, stats
 
 from uq.cli.rare_event import as_json
 from uq.errors import InputError
-from uq.explore import active_learning
 from uq.explore.active_learning import EventEmulator
 from uq.explore.limit_state import EventLimit, scale_of
 from uq.explore.rare_events import rare_event
+from uq.stats import regressions
 from uq.stats.intervals import weighted_count_interval
 
 S = np.sqrt(2.0)
@@ -80,6 +80,12 @@ def test_any_and_all_of_several_limits_have_closed_forms(method):
         assert as_json(ds)["combination"] == "all"
 
 
+def test_all_of_several_limits_are_learnt_as_one_event():
+    within = [("sum", 4.264891, "above"), ("sum", 4.753424, "below")]
+    ds = rare_event(branches(), all_of=within, method="active", samples=150, workers=0)
+    assert covers(ds, 0.9e-5) and int(ds["contradicted"]) <= 2
+
+
 def test_limits_of_outputs_of_different_scale_are_one_event():
     of = study("exponential-wear", WEAR)
     early, late = LIFE.ppf(1e-4), LIFE.isf(1e-5)
@@ -108,7 +114,7 @@ def test_the_scale_of_a_skewed_life_is_logarithmic_and_keeps_the_side(below):
     ids=("stair", "cliff"),
 )
 def test_a_jump_that_the_emulator_predicts_badly_is_corrected_by_rows(of, output, threshold, truth):
-    ds = rare_event(of, output, threshold, method="active", workers=0)
+    ds = rare_event(of, output, threshold, method="active", samples=200, workers=0)
     assert covers(ds, truth)
     assert int(ds["contradicted"]) > 0
     assert interval(ds)[1] > 1.3 * interval(ds)[0]
@@ -123,7 +129,7 @@ def test_the_interval_holds_if_the_emulator_is_wrong(monkeypatch, shift):
         return np.where(mean + shift > 0, 0.999, 1e-9), mean + shift, most + shift
 
     monkeypatch.setattr(EventEmulator, "__call__", wrong)
-    ds = rare_event(branches(), "sum", 4.753424, method="active", samples=200, workers=0)
+    ds = rare_event(branches(), "sum", 4.753424, method="active", samples=150, workers=0)
     assert int(ds["contradicted"]) > 3
     assert not 0.7e-6 < float(ds["emulated"]) < 1.4e-6
     assert covers(ds, 1e-6)
@@ -132,7 +138,7 @@ def test_the_interval_holds_if_the_emulator_is_wrong(monkeypatch, shift):
 def test_rows_with_their_own_random_numbers_are_within_the_interval():
     of = study("limit_states:ROUGH", PLANE)
     truth, _ = integrate.quad(lambda noise: stats.norm.sf(4.5 - noise), -0.5, 0.5, epsabs=0)
-    ds = rare_event(of, "rough", 4.5, method="active", workers=0)
+    ds = rare_event(of, "rough", 4.5, method="active", samples=150, workers=0)
     assert covers(ds, truth)
     assert int(ds["contradicted"]) > 0
 
@@ -146,7 +152,7 @@ def test_an_event_out_of_reach_is_bounded_by_plain_rows():
 
 def test_rows_without_a_value_count_as_outside_and_have_a_bound():
     of = linear(settings={"fail_above": 0.97})
-    ds = rare_event(of, "y", 9.0, method="active", workers=0)
+    ds = rare_event(of, "y", 9.0, method="active", samples=150, workers=0)
     assert int(ds["failed"]) > 0
     truth = 0.97**4 / (4 * 144)  # without the rows that fail
     assert covers(ds, truth) and float(ds["failed_high"]) > max(1 / 576, float(ds["high"]))
@@ -191,17 +197,17 @@ def test_without_openturns_there_is_a_sentence(monkeypatch):
 
 
 def test_a_process_that_cannot_be_factorised_gets_a_nugget(monkeypatch):
-    process, calls = active_learning.process, []
+    fitter, nuggets = regressions._process_fitter, []
 
-    def refusing(fit, z, y, uniform):
-        calls.append(fit["nugget"])
+    def refusing(z, y, fit):
+        nuggets.append(fit["nugget"])
         if fit["nugget"] < 1e-6:
             raise RuntimeError("no eigenvalue")
-        return process(fit, z, y, uniform)
+        return fitter(z, y, fit)
 
-    monkeypatch.setattr(active_learning, "process", refusing)
+    monkeypatch.setattr(regressions, "_process_fitter", refusing)
     ds = rare_event(branches(), "sum", 3.0, method="active", samples=100, workers=0)
-    assert min(calls) < 1e-6 and covers(ds, stats.norm.sf(3.0))
+    assert min(nuggets) < 1e-6 and covers(ds, stats.norm.sf(3.0))
 
 
 def test_a_weighted_count_has_the_limits_of_poisson():
