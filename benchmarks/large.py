@@ -1,12 +1,13 @@
-"""A million rows of ten inputs and twenty outputs: time and memory of their analyses.
+"""CPU time and memory of what reads large results; each command runs in a process of its own.
 
-``python -m benchmarks.large``. Each command runs in a process of its own.
+``python -m benchmarks.large``: analyses of a million rows of ten inputs and twenty outputs.
+``python -m benchmarks.large verbs [ROWS]``: every verb that reads a result, of ten million rows of
+three inputs and one output; it prints the table of `docs/scaling.md`.
 """
 
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -54,20 +55,73 @@ DESIGNS = {
     "crossed": ("saltelli", 2**13, 11),
 }
 COMMANDS = {
-    "summary": ("plain", ("summary",), 20),
+    "summary": ("plain", ("summary",), 15),
     "summary of 8 replicates": ("replicates", ("summary",), 20),
     "Sobol' indices with intervals": ("crossed", ("sensitivity",), 60),
     "RBD-FAST": ("plain", ("sensitivity", "--method", "rbd-fast"), None),
     "delta": ("plain", ("sensitivity", "--method", "delta"), None),
     "PAWN": ("plain", ("sensitivity", "--method", "pawn"), None),
-    "quantile-oriented": ("plain", ("sensitivity", "--method", "quantile"), None),
+    "quantile-oriented": ("plain", ("sensitivity", "--method", "quantile"), 6),
     "HDMR, one output": ("plain", ("sensitivity", "--method", "hdmr", "--output", "y0"), None),
 }
 MOST_MEMORY = 3.0  # GB
 
+MANY = """
+study = {{name = "many", model = "ishigami"}}
+design = {{method = "monte-carlo", samples = {rows}, seed = 2026}}
+analysis = {{thresholds = {{y = 10.0}}}}
+[uncertain]
+x1 = {{distribution = "uniform", lower = -3.14159, upper = 3.14159}}
+x2 = {{distribution = "uniform", lower = -3.14159, upper = 3.14159}}
+x3 = {{distribution = "uniform", lower = -3.14159, upper = 3.14159}}
+"""
+ROWS = 10_000_000
+VERBS = (
+    "summary {result}",
+    "summary {result} --full",
+    "sensitivity {result}",
+    "sensitivity {result} --method quantile",
+    "convergence {result}",
+    "compare {result} {other}",
+    "what-if {result} --set uncertain.x1.upper=3.0",
+    "trace {result} outputs/y/mean",
+    "row {result} 5",
+    "row {result} --highest y",
+    "status {result}",
+    "verify {result}",
+    "emulate {result} -o {folder}/y.emulator",
+    "export {result} --csv {folder}/rows.csv",
+    "plot {result} -o {folder}/plots",
+    "report {result} -o {folder}/page.html",
+)
+
+
+def verbs(rows=ROWS):
+    """Print a table of the verbs that read a result: CPU time and memory of each."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        study = folder / "many.toml"
+        study.write_text(MANY.format(rows=rows))
+        places = {"folder": name, "result": folder / "many.nc", "other": folder / "other.nc"}
+        run = ["run", str(study), "--quiet", "--workers", "0", "-o"]
+        print("| verb | CPU time | memory |\n| --- | ---: | ---: |")
+        _print_line("uq run --workers 0", _taken([*run, str(places["result"])]))
+        _taken([*run, str(places["other"]), "--samples", str(rows // 10)])
+        for verb in VERBS:
+            taken = _taken([word.format(**places) for word in verb.split()])
+            options = [word for word in verb.split() if "{" not in word and word != "-o"]
+            _print_line(f"uq {' '.join(options)}", taken)
+
+
+def _print_line(name, taken):
+    seconds, memory = taken
+    print(f"| `{name}` | {seconds:.0f} s | {memory:.1f} GB |", flush=True)
+
 
 def main(chosen):
     """Time the chosen commands, or all."""
+    if chosen[:1] == ["verbs"]:
+        return verbs(*map(int, chosen[1:]))
     late = []
     with tempfile.TemporaryDirectory() as folder:
         files = {}
@@ -76,7 +130,7 @@ def main(chosen):
                 continue
             if name not in files:
                 files[name] = _written(Path(folder), name)
-            seconds, memory = _timed([arguments[0], str(files[name]), *arguments[1:], "--json"])
+            seconds, memory = _taken([arguments[0], str(files[name]), *arguments[1:], "--json"])
             asked = "" if most is None else f" (at most {most} s and {MOST_MEMORY:g} GB)"
             print(f"{title:32} {seconds:6.1f} s, {memory:.2f} GB{asked}", flush=True)
             if most is not None and (seconds > most or memory > MOST_MEMORY):
@@ -94,24 +148,24 @@ def _written(folder, name):
     return path
 
 
-def _timed(arguments):
-    """Return the time of a command [s] and the most memory that it held [GB]."""
+def _taken(arguments):
+    """Return the CPU time of a command [s] and the most memory that it held [GB]."""
     code = (
         "import resource, sys\n"
         "from uq.cli import main\n"
         "try:\n"
         "    main()\n"
         "finally:\n"
-        "    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)\n"
+        "    used = resource.getrusage(resource.RUSAGE_SELF)\n"
+        "    print(used.ru_utime + used.ru_stime, used.ru_maxrss, file=sys.stderr)\n"
     )
-    began = time.perf_counter()
     ended = subprocess.run(
         [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=False
     )
-    seconds = time.perf_counter() - began
     if ended.returncode:
         raise RuntimeError(ended.stderr)
-    return seconds, int(ended.stderr.split()[-1]) * 1024 / 1e9
+    seconds, memory = ended.stderr.split()[-2:]
+    return float(seconds), int(memory) * 1024 / 1e9
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from uq.assess.sensitivities import sensitivities
 from uq.assess.statistic import Reader
 from uq.assess.statistics.counts import stated_error
 from uq.assess.statistics.table import STATISTICS
-from uq.assess.summary import Described, summarise
+from uq.assess.summary import Described, Summary, summarise
 from uq.assess.targets import split_name
 from uq.errors import InputError
 from uq.indices.methods import METHODS, indices_of, piloted_by
@@ -62,9 +62,16 @@ def running_estimates(result: AnyResult, output: str | None = None) -> pd.DataFr
     >>> running[running["estimate"] == "mean"]["samples"].to_list()
     [16, 32, 63, 125, 250, 500, 1000]
     """
+    return running_table(Result.of(result), output)
+
+
+def running_table(
+    result: Result, output: str | None = None, summary: Summary | None = None
+) -> pd.DataFrame:
+    """Return `running_estimates`; a `summary` of all rows is not computed again."""
     lines = [
         (line.output, line.label, samples, *line.estimate.numbers, line.kind, line.input)
-        for samples, line in running(Result.of(result), output)
+        for samples, line in running(result, output, summary)
     ]
     return pd.DataFrame(lines, columns=COLUMNS)
 
@@ -93,7 +100,9 @@ class RunningEstimate(NamedTuple):
     input: str = ""
 
 
-def running(result: Result, output: str | None = None) -> Iterator[tuple[int, RunningEstimate]]:
+def running(
+    result: Result, output: str | None = None, summary: Summary | None = None
+) -> Iterator[tuple[int, RunningEstimate]]:
     """Yield the lines of `running_estimates`: number of samples, estimate from them."""
     result.refuse_if_weighted("running estimates")
     names = None
@@ -105,7 +114,9 @@ def running(result: Result, output: str | None = None) -> Iterator[tuple[int, Ru
         list(sensitivities(result, method).targets) if (method := method_shown(result)) else []
     )
     for samples in _sizes(result):
-        for line in estimates_from(result.first_samples(samples), targets):
+        rows = result.first_samples(samples)
+        of_all = summary if len(rows) == len(result) else None
+        for line in estimates_from(rows, targets, of_all):
             if names is None or split_name(line.output)[1] in names:
                 yield samples, line
 
@@ -130,9 +141,17 @@ def enough(result: AnyResult, output: str | None = None) -> pd.DataFrame:
         all of them had the same sign; ``warning``, not empty where `own` is the larger: then more
         rows do not help.
     """
-    result = Result.of(result)
+    return errors_of(Result.of(result), output)
+
+
+def errors_of(
+    result: Result, output: str | None = None, outputs: Mapping[str, Described] | None = None
+) -> pd.DataFrame:
+    """Return `enough`; statistics of the `outputs` of all rows are not computed again."""
     result.refuse_if_weighted("the error of sampling")
-    outputs, names = summarise(result).outputs, result.output_names
+    if outputs is None:
+        outputs = summarise(result, parts=("moments", "quantiles")).outputs
+    names = result.output_names
     rows = result.independent
     plain = [name for name in names if not is_error(name, names)]
     lines = {}
@@ -209,9 +228,11 @@ def method_shown(result: Result) -> str | None:
     return name if name and groups >= METHODS[name].least else None
 
 
-def estimates_from(result: Result, targets: list[str]) -> Iterator[RunningEstimate]:
-    """Yield the statistics of some rows, and the indices of some targets."""
-    summary = summarise(result, parts=_RUNNING)
+def estimates_from(
+    result: Result, targets: list[str], summary: Summary | None = None
+) -> Iterator[RunningEstimate]:
+    """Yield the statistics of some rows, from their summary if given, and indices of targets."""
+    summary = summary or summarise(result, parts=_RUNNING)
     for name, output in summary.outputs.items():
         for statistic in output.statistics:
             if statistic.is_read_by(Reader.RUNNING):

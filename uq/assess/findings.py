@@ -91,10 +91,10 @@ class Findings:
         """The `uq.running_estimates`; if refused, no lines, and the reason in ``attrs``."""
         import pandas as pd
 
-        from uq.assess.convergence import COLUMNS, running_estimates
+        from uq.assess.convergence import COLUMNS, running_table
 
         try:
-            return running_estimates(self.result)
+            return running_table(self.result, summary=self.summary)
         except InputError as refused:
             nothing = pd.DataFrame(columns=COLUMNS)
             nothing.attrs["refused"] = str(refused)

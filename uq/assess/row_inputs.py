@@ -83,7 +83,7 @@ def inputs_of(rows: Result, study: StudyFile | None = None, text: str = "") -> I
     laws = laws_of(text)
     tied = {name: law.equals for name, law in study.uncertain.items() if isinstance(law, Tied)}
     admissible = {
-        name: tuple(map(float, rows.dataset[name].attrs.get("admissible", EVERYWHERE)))
+        name: tuple(map(float, rows.dataset.variables[name].attrs.get("admissible", EVERYWHERE)))
         for name in study.uncertain
     }
     bounds = {}

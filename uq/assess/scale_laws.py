@@ -72,12 +72,13 @@ class IndependentScale:
 
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""
-        below, moment = np.empty(len(lives)), np.log(time)
-        for start in range(0, len(lives), _BLOCK):
-            block = slice(start, start + _BLOCK)
-            with np.errstate(divide="ignore", invalid="ignore"):
+        below = np.empty(len(lives))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moment = np.log(time)
+            for start in range(0, len(lives), _BLOCK):
+                block = slice(start, start + _BLOCK)
                 share = self.term.below(moment - np.log(lives[block]) + self.drawn[block])
-            below[block] = np.where(np.isnan(lives[block]), 0.0, share)
+                below[block] = np.where(np.isnan(lives[block]), 0.0, share)
         return below
 
     def log_life_shifts(self, z: Floats) -> Iterator[Floats]:

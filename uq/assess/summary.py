@@ -230,6 +230,7 @@ def summarise(
         if other is not None:
             others[element.name] = _described(element, other[0], False, other[1])
         most = max(most, int(element.failed.sum()))
+        context.samples.clear()
     if most:
         notes.append(SOME_FAILED.format(most=most, rows=len(rows)))
     return Summary(

@@ -191,7 +191,7 @@ class WeightedMixture(Sample):
     def _share(self, numbers: Floats, kept: Mask, dependence: Dependence) -> Estimate:
         """Estimate a probability, or give the reason why the weights do not support it."""
         estimate = weighted_share(
-            numbers[kept], self._weights(kept), dependence, None, self.confidence
+            _selected(numbers, kept), self._weights(kept), dependence, None, self.confidence
         )
         return self._trusted(estimate, kept)
 
@@ -221,7 +221,7 @@ class WeightedMixture(Sample):
     def _weights(self, kept: Mask) -> Floats | None:
         """Return the weights of some rows."""
         weights = self.element.weights
-        return None if weights is None else weights[kept]
+        return None if weights is None else _selected(weights, kept)
 
     def _dependence(self, kept: Mask, time: float, side: int = 1) -> Dependence:
         """Return the dependence of some rows, for the variance of P(T < time).
@@ -266,9 +266,8 @@ class WeightedMixture(Sample):
 
         @cache  # both ends of an interval are sought from the same places
         def share(y: float) -> Estimate:
-            estimate = weighted_share(
-                self.element.below(y, signed=True)[kept], weights, dependence, hits, self.confidence
-            )
+            numbers = _selected(self.element.below(y, signed=True), kept)
+            estimate = weighted_share(numbers, weights, dependence, hits, self.confidence)
             return self._cautious(estimate, lambda plain: plain.below(y, signed=True), kept)
 
         return share, fewest_rows(hits)
@@ -288,7 +287,7 @@ class WeightedMixture(Sample):
     def _average(self, value: float) -> float:
         if value not in self._averages:
             kept = self.element.present
-            below = self.element.below(value, signed=True)[kept]
+            below = _selected(self.element.below(value, signed=True), kept)
             self._averages[value] = float(np.average(below, weights=self._weights(kept)))
         return self._averages[value]
 
@@ -385,6 +384,11 @@ class WeightedMixture(Sample):
         if share(float(values[0])).high >= probability:  # all rows may lie above the quantile
             low = nan
         return Estimate(value, low, high, self._why_open(probability, low, high, rows))
+
+
+def _selected(numbers: Floats, kept: Mask) -> Floats:
+    """Return the numbers of some rows, without a copy where these are all."""
+    return numbers if kept.all() else numbers[kept]
 
 
 BY_WEIGHTS: Functions = (WeightedMixture,)

@@ -182,7 +182,7 @@ def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
     for place, value in sorted(changes.items(), key=lambda entry: entry[0] != _COPULA):
         _put(data, place, value)
     for name in [name for name in data["uncertain"] if name in rows.dataset]:
-        units = str(rows.dataset[name].attrs["units"])
+        units = str(rows.dataset.variables[name].attrs["units"])
         misfits = law_in_units(data["uncertain"][name], name, units)
         if misfits:
             raise InputError(
@@ -281,7 +281,7 @@ def _measured(name: str) -> str:
 def _faults(rows: Result, study: StudyFile, inputs: Inputs) -> list[InputFault]:
     faults = []
     for name, law in inputs.laws.items():
-        about = rows.dataset[name].attrs
+        about = rows.dataset.variables[name].attrs
         declared = Parameter("", about["units"], "", inputs.bounds[name], "")
         if law.times is None and (problem := law_problem(law, declared)):
             faults.append(problem.within("uncertain", name))

@@ -69,13 +69,15 @@ def binomial_sizes(
         assumed. The extent is 1 for up to 20 effective contributing rows and 0 from 40 on. It is
         linear in between, so that the interval is continuous in the weights.
     """
-    worth = np.ones(len(numbers)) if weights is None else weights
-    of_samples = dependence.sums_of_samples(worth)
     hits = []
     for side in (numbers, 1 - numbers):
-        carried = dependence.sums_of_samples(worth * side)
+        carried = dependence.sums_of_samples(side if weights is None else weights * side)
+        if carried.sum() > 3 * FEW * carried.max(initial=0.0):
+            continue  # at least as many effective rows
         extent = float(np.clip(2 - effective_rows(carried) / FEW, 0.0, 1.0))
         if extent > 0:
+            worth = np.ones(len(numbers)) if weights is None else weights
+            of_samples = dependence.sums_of_samples(worth)
             most = carried.max()
             # Samples with nearly equal contributions count nearly equally.
             heaviest = (of_samples * carried).max() / most if most > 0 else of_samples.max()

@@ -298,6 +298,7 @@ def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
 def _quantity(
     findings: Findings, described: Described, context: Context, element: Element
 ) -> Quantity:
+    context.samples.clear()
     folded = element
     if element.is_angle:  # its sign is only a direction
         folded = replace(element, values=element.for_thresholds)

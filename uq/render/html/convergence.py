@@ -7,7 +7,7 @@ from typing import Any, cast
 import pandas as pd
 
 from uq.assess.answer.wording import NumberTarget, called
-from uq.assess.convergence import enough
+from uq.assess.convergence import errors_of
 from uq.assess.findings import Findings
 from uq.assess.fleet import Fleet
 from uq.assess.fleet_numbers import Banded
@@ -44,7 +44,7 @@ def convergence_of(findings: Findings, outcomes: list[Outcome]) -> dict[str, Any
     if not outcomes:
         return nothing | {"refused": "there is no numeric output"}
     try:
-        errors = enough(findings.result)
+        errors = errors_of(findings.result, outputs=findings.summary.outputs)
     except InputError as refused:
         return nothing | {"refused": str(refused)}
     lines = [
