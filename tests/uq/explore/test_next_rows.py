@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from computed import as_text, computed, study_of
+from limit_states import PLANE
 from scipy.special import ndtr
 
 import uq as api
 from uq.errors import InputError
-from uq.explore.next_rows import Aim, _proposed, _study_of
+from uq.execution.options import RunOptions
+from uq.explore.next_rows import Aim, _proposed, _study_of, extend_by_next
 from uq.result.result import Result
 
 SIGNS = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
@@ -145,3 +147,14 @@ def test_a_limit_that_no_life_has_is_one_line():
     ds = computed(study_of(wear | design(40)))
     with pytest.raises(InputError, match="next rows: -1 is no life"):
         api.next_rows(ds, 20, "life", near=-1.0)
+
+
+def test_rows_of_each_round_have_random_numbers_of_their_own(tmp_path):
+    tables = {"study": {"name": "rough", "model": "linear"}, "uncertain": PLANE} | design(40)
+    result = Result(computed(study_of(tables, "limit_states:ROUGH")))
+    for path in (tmp_path / "first.nc", tmp_path / "second.nc"):
+        options = RunOptions(workers=0)
+        ds = extend_by_next(result, 20, Aim(), path, "limit_states:ROUGH", options)
+        result = Result(ds)
+    noise = (ds["rough"] - ds["x1"]).values
+    assert len(np.unique(noise.round(9))) == 80
