@@ -120,7 +120,8 @@ def report(name, count, settings, goal):
         f"ninth decile {np.quantile(off, 0.9):.2%}"
     )
     beyond = np.mean(off > errors[:CHECKED] / reference)
-    stated, asked = errors / every, study.settings.accuracy
+    reached = np.isfinite(errors)
+    stated, asked = errors[reached] / every[reached], study.settings.accuracy
     print(
         f"  beyond the error stated: {beyond:.0%} of them; stated: median {np.median(stated):.2%}, "
         f"larger than the accuracy {np.mean(stated > asked):.0%}"

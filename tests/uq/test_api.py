@@ -93,6 +93,26 @@ def test_an_unknown_name_is_an_attribute_error():
         _ = uq.runn
 
 
+def test_a_command_computes_with_a_single_thread(folder):
+    """numpy reads the number of threads when it is imported: other threads wait, and cost CPU."""
+    program = (
+        "import os, sys, uq.cli as cli\n"
+        "load = cli._load_when_used\n"
+        "def loads(*names):\n"
+        "    print('numpy' in sys.modules, os.environ['OPENBLAS_NUM_THREADS'])\n"
+        "    load(*names)\n"
+        "cli._load_when_used = loads\n"
+        "sys.argv[1:] = ['summary', 'absent.nc']\n"
+        "cli.main()\n"
+    )
+    plain = {name: value for name, value in os.environ.items() if "_NUM_THREADS" not in name}
+    ended = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, env=plain, timeout=60
+    )
+    assert ended.stdout == "False 1\n"
+    assert "absent.nc" in ended.stderr
+
+
 @pytest.mark.parametrize(
     "program",
     [

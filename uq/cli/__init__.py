@@ -76,10 +76,10 @@ def main() -> NoReturn:
     if sys.argv[1:2] and sys.argv[1] in _READERS:
         for name in _NOT_ASKED:
             sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # "not installed"
-    if len(sys.argv) > 2 and sys.argv[1] in (*_READERS, "run") and "--help" not in sys.argv:
-        _load_when_used(*_SELDOM_USED)
     for name, value in SINGLE_THREADED.items():
         os.environ.setdefault(name, value)
+    if len(sys.argv) > 2 and sys.argv[1] in (*_READERS, "run") and "--help" not in sys.argv:
+        _load_when_used(*_SELDOM_USED)
     for name in _HOMES:
         if not os.path.isabs(os.environ.get(name, os.sep)):
             del os.environ[name]
