@@ -52,6 +52,8 @@ def openturns() -> Any:
         raise InputError("emulators need OpenTURNS: pip install 'vibrolife[reliability]'") from None
     openturns.Log.Show(openturns.Log.NONE)
     openturns.TBB.Disable()  # rows are computed in parallel by the run itself
+    # Of covariances with two nearly equal eigenvalues, which 50 iterations do not tell apart.
+    openturns.ResourceMap.SetAsUnsignedInteger("Matrix-LargestEigenValueIterations", 10_000)
     return openturns
 
 

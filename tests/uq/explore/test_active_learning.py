@@ -222,6 +222,12 @@ def test_a_weighted_count_has_the_limits_of_poisson():
     assert hits > 0.95 * 2000
 
 
+def test_a_covariance_whose_eigenvalues_are_alike_is_factorised():
+    """OpenTURNS gave up its search for the largest one, and the event had no estimate."""
+    estimate = rare_event(with_seed(cliff(PLANE, 1), 28), "stress", 5.0, method="active", workers=0)
+    assert covers(estimate, CLIFF)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("of", "output", "threshold", "truth"),
