@@ -1,9 +1,9 @@
 """What the processor allows the hot loops, and what they reach: ``python -m benchmarks.ports``.
 
 The operations of each loop are counted, not estimated: the source runs uncompiled on numbers that
-count what is done with them. Divided by what the processor can start in a cycle they give a limit
-for each kind of unit; the largest binds. Loads are those of the source, of which a compiler keeps
-some in registers. The loop itself is timed in cycles of this computer, whose length a chain of
+count their operations. The counts over those that the processor can start in a cycle are limits,
+one for each kind of unit; the largest binds. Loads are those of the source; a compiler keeps some
+of them in registers. The loop itself is timed in cycles of this computer, whose length a chain of
 dependent fused operations tells: each waits four cycles for the one before.
 """
 
@@ -78,7 +78,7 @@ class Loop(NamedTuple):
 
 
 class Number:
-    """A number that counts what is done with it."""
+    """A number that counts the operations on it."""
 
     __slots__ = ("value",)
     done: Counter[str] = Counter()

@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numba
@@ -73,17 +74,26 @@ def loops() -> dict[str, Callable[[], object]]:
 
 
 def loop_ratios() -> dict[str, float]:
-    """Return the CPU time of each loop over that of the yardstick: the best of some turns each."""
+    """Return the ratio of each loop's CPU time to that of the yardstick."""
     w = aligned(2 * LANES)
     w[:LANES] = 1.0
     calls = {"": lambda: _yardstick(w, TURNS_OF_YARDSTICK), **loops()}
     calls[""]()
-    best = dict.fromkeys(calls, np.inf)
-    for _ in range(TURNS):
-        for name, call in calls.items():
-            began = time.process_time()
-            call()
-            best[name] = min(best[name], time.process_time() - began)
+    return _ratios({name: partial(_cpu_of, call) for name, call in calls.items()}, TURNS)
+
+
+def _cpu_of(call: Callable[[], object]) -> float:
+    began = time.process_time()
+    call()
+    return time.process_time() - began
+
+
+def _ratios(runs: dict[str, Callable[[], float]], turns: int) -> dict[str, float]:
+    """Return the ratios of CPU times to that of the run "", the least of some turns each."""
+    best = dict.fromkeys(runs, np.inf)
+    for _ in range(turns):  # by turns, so that a busy computer is unfair to none
+        for name, run in runs.items():
+            best[name] = min(best[name], run())
     unit = best.pop("")
     return {name: seconds / unit for name, seconds in best.items()}
 
@@ -102,16 +112,15 @@ def commands(folder: Path) -> dict[str, tuple[str, ...]]:
 
 
 def command_ratios() -> dict[str, float]:
-    """Return the CPU time of each command over that of an import: the best of some turns each."""
+    """Return the ratio of each command's CPU time to that of the import."""
+
+    def cpu_of(command: tuple[str, ...]) -> float:
+        return children.run(command, stdout=subprocess.DEVNULL).cpu
+
     with tempfile.TemporaryDirectory() as folder:
         rivals = {"": REFERENCE, **commands(Path(folder))}
-        best = dict.fromkeys(rivals, np.inf)
-        for _ in range(COMMAND_TURNS):
-            for name, command in rivals.items():
-                taken = children.run(command, stdout=subprocess.DEVNULL)
-                best[name] = min(best[name], taken.cpu)
-    unit = best.pop("")
-    return {name: seconds / unit for name, seconds in best.items()}
+        runs = {name: partial(cpu_of, command) for name, command in rivals.items()}
+        return _ratios(runs, COMMAND_TURNS)
 
 
 def report(ratios: dict[str, float], kept: dict[str, float]) -> list[str]:
