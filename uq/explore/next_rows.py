@@ -1,6 +1,5 @@
 """Next rows: where a result of few rows gains most, drawn at random so that weights stay right."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -27,7 +26,7 @@ from uq.study.definition import Study
 from uq.study.row_sampling import physical
 
 POOL = 8192
-"""Rows drawn from the laws of the study, among which the next rows are chosen."""
+"""Rows drawn from the laws of the study, among which the next rows of a part are chosen."""
 
 _MOST_LEARNT = 400
 _LEAST = 1e-12
@@ -87,13 +86,14 @@ def next_rows(
     -----
     Rows are drawn at random, from a density a(x) times that of the laws, where a is the variance of
     a Gaussian process, the probability that it errs on the side of the limit, or the volume around
-    a row. The rows are divided into five parts; for each, a is made from the rows of the others,
-    and a fifth of the next rows is drawn. Within a part, rows of the study and next rows are
-    weighted by the mixture of their densities (balance heuristic) [1]_. As a does not depend on the
-    rows of the part, weighted means have no bias in the first round. In a second one, rows of the
-    first depend on the rows of all parts, if weakly: measured over 100 results of 120, 30 and 20
-    rows, the weights add up to 1.2 % less than the number of rows. Weighted estimates divide by
-    their sum, which leaves no bias that this sample shows.
+    a row. In the first round, the rows are divided into five parts; for each, a is made from the
+    rows of the others, and a fifth of the next rows is drawn. Within a part, rows of the study and
+    next rows are weighted by the mixture of their densities (balance heuristic) [1]_. As a does not
+    depend on the rows of the part, weighted means have no bias.
+
+    In later rounds, a is made from all rows so far, and half of the next rows are drawn from the
+    laws. Weights of earlier rows do not change, and those of the next rows are a mean of 1 whatever
+    the earlier rows are, so that weighted means have no bias either.
 
     References
     ----------
@@ -136,7 +136,8 @@ def extend_by_next(
     given = with_given_rows(study, scores, "next rows", int(seed[0]))
     part = path.with_name(f"{path.stem}-next-{len(result)}.nc")
     new = run_study(given, part, replace(options, say=ignore))  # hints are for studies of users
-    rounds = [result.take(result.dataset[ROUND].values == k + 1) for k in range(len(_aims(result)))]
+    numbers = range(1, _rounds(result) + 1)
+    rounds = [result.take(result.dataset[ROUND].values == number) for number in numbers]
     study_rows = own_rows(result).dataset.drop_vars(WEIGHT, errors="ignore")
     combined = with_rounds(
         Result(study_rows),
@@ -144,7 +145,7 @@ def extend_by_next(
         np.log(weights),
         np.zeros(len(weights), np.int32),
     )
-    combined[ROUND].attrs |= {INDEPENDENT_ROUNDS: 1, _AIMS: json.dumps([*_aims(result), aim])}
+    combined[ROUND].attrs[INDEPENDENT_ROUNDS] = 1
     attrs = {"role": WEIGHT, "units": "1", MOST: float(weights.max() / weights.mean())}
     attrs["long_name"] = "density of the laws over that of the mixture from which rows were drawn"
     combined = combined.assign({WEIGHT: ("row", weights, attrs)})
@@ -153,15 +154,9 @@ def extend_by_next(
     return combined
 
 
-_AIMS = "aims"
-"""Attribute of the round: what the rows of each round were for, in JSON."""
-
-
-def _aims(result: Result) -> list[Aim]:
-    """Return the aim of each round of next rows so far."""
-    if not result.has_rounds:
-        return []
-    return [Aim(*aim) for aim in json.loads(result.dataset[ROUND].attrs[_AIMS])]
+def _rounds(result: Result) -> int:
+    """Return the number of rounds of next rows so far."""
+    return int(result.dataset[ROUND].values.max()) if result.has_rounds else 0
 
 
 def _study_of(result: Result, model: str | None) -> Study:
@@ -194,44 +189,56 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
         raise InputError(f"next rows: {rows} must be between {FOLDS} and {POOL // 8}")
     if aim.output:
         find_element(study, aim.output)
-    names, aims = list(study.uncertain), [*_aims(result), aim]
+    names, is_first = list(study.uncertain), not _rounds(result)
     values = np.column_stack([result.dataset[name].values for name in names]).astype(float)
     scales = [scale_of(name, column) for name, column in zip(names, values.T, strict=True)]
-    rng = np.random.default_rng((study.design.seed, _SEED, len(result)))
-    pool = rng.standard_normal((POOL, len(names)))
-    x = physical(study, special.ndtr(pool))
     columns = [study.model.parameter_names.index(name) for name in names]
+    rng = np.random.default_rng((study.design.seed, _SEED, len(result)))
 
-    z, z_pool = scaled(scales, values), scaled(scales, x[:, columns])
-    rounds = result.dataset[ROUND].values if result.has_rounds else np.zeros(len(result), int)
-    part = parts_of(values)
-    for number in range(1, len(aims)):
-        inside = np.flatnonzero(rounds == number)
-        part[inside] = _parts_of_round(len(inside))
-    chosen, new_part = np.empty(rows, int), _parts_of_round(rows)
-    weights, taken = np.empty(len(result) + rows), np.zeros(POOL, bool)
-    for k in range(FOLDS):
-        mine, fresh = np.flatnonzero(part == k), np.flatnonzero(new_part == k)
-        density = np.full(POOL + len(mine), float((rounds[mine] == 0).sum()))
-        for number, earlier in enumerate(aims):
-            count = (rounds[mine] == number + 1).sum() if number + 1 < len(aims) else len(fresh)
-            learnt = np.flatnonzero((part != k) & (rounds <= number))
-            gain = _gain(result, z, learnt, np.vstack([z_pool, z[mine]]), earlier)
-            density += count * gain / gain[:POOL].mean()
-        # The last is the gain of this aim.
-        p = np.where(taken, 0.0, gain[:POOL])
-        p /= p.sum()
-        chosen[fresh] = rng.choice(POOL, len(fresh), replace=False, p=p)
-        taken[chosen[fresh]] = True  # no row is computed twice
-        total = len(mine) + len(fresh)
-        weights[mine] = total / density[POOL:]
-        weights[len(result) + fresh] = total / density[chosen[fresh]]
-    return pool[chosen], weights
+    z = scaled(scales, values)
+    part = parts_of(values) if is_first else np.ones(len(result), int)
+    weights = np.ones(len(result)) if is_first else result.dataset[WEIGHT].values
+    scores, new_weights = list[Floats](), list[Floats]()
+    for k in range(FOLDS if is_first else 1):
+        inside = part == k
+        count = len(range(k, rows, FOLDS)) if is_first else rows
+        pool = rng.standard_normal((POOL, len(names)))
+        x = physical(study, special.ndtr(pool))[:, columns]
+        at = np.vstack([scaled(scales, x), z[inside]])
+        density = _density(_gain(result, z, np.flatnonzero(~inside), at, aim), count)
+        if not is_first:
+            density = (1 + density) / 2
+        chosen = _drawn(density[:POOL], count, rng)
+        scores.append(pool[chosen])
+        total = inside.sum() + count
+        mixture = (inside.sum() + count * density) / total
+        weights[inside] = 1 / mixture[POOL:]
+        new_weights.append(1 / mixture[chosen])
+    return np.vstack(scores), np.concatenate([weights, *new_weights])
 
 
-def _parts_of_round(rows: int) -> NDArray[np.intp]:
-    """Return the part for which each row of a round is drawn."""
-    return np.sort(np.arange(rows) % FOLDS)
+def _density(gain: Floats, count: int) -> Floats:
+    """Return a gain as density over that of the laws, bounded so that no row is drawn twice.
+
+    Parameters
+    ----------
+    gain : ndarray, shape (n,)
+        The first `POOL` at points drawn from the laws.
+    count : int
+        Number of these to draw.
+    """
+    largest = np.sort(gain[:POOL])[::-1][:count]
+    rest = gain[:POOL].sum() - np.cumsum(largest) + largest
+    bounds = rest / (count - np.arange(count))
+    bounded = np.minimum(gain, bounds[np.argmax(bounds >= largest)])
+    return bounded / bounded[:POOL].mean()
+
+
+def _drawn(density: Floats, count: int, rng: np.random.Generator) -> NDArray[np.intp]:
+    """Draw points, each with a probability in proportion to its density: systematic sampling."""
+    order = rng.permutation(len(density))
+    ends = np.cumsum(density[order]) * (count / len(density))
+    return order[np.searchsorted(ends[:-1], rng.random() + np.arange(count))]
 
 
 def _gain(result: Result, z: Floats, learnt: NDArray[np.intp], at: Floats, aim: Aim) -> Floats:

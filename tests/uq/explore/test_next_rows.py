@@ -76,6 +76,26 @@ def test_weighted_means_have_no_bias(aim):
         assert abs(np.mean(estimates) - truth) < 3 * error
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("aim", [Aim(), Aim("y"), Aim("y", 10.0)])
+def test_weighted_means_of_two_rounds_have_no_bias(aim, tmp_path):
+    """Of 150 results of 120 rows, 30 next ones and 20 more, which learn from the 30."""
+    means, shares, totals, last = [], [], [], []
+    for seed in range(5000, 5150):
+        result = Result(waves(120, seed))
+        for rows in (30, 20):
+            path = tmp_path / f"{seed}-{rows}.nc"
+            result = Result(extend_by_next(result, rows, aim, path, None, RunOptions(workers=0)))
+        weights, y = (result.dataset[name].values for name in ("weight", "y"))
+        means.append(np.mean(weights * y))
+        shares.append(np.mean(weights * (y > 10)))
+        totals.append(weights.mean())
+        last.append(weights[-20:].mean())
+    for estimates, truth in ((means, 3.5), (shares, 0.0380), (totals, 1.0), (last, 1.0)):
+        error = np.std(estimates, ddof=1) / np.sqrt(len(estimates))
+        assert abs(np.mean(estimates) - truth) < 3 * error
+
+
 def test_extend_adds_them_in_rounds_with_weights(uq, tmp_path):
     (tmp_path / "waves.toml").write_text(as_text(TABLES | design(60)))
     uq("run", tmp_path / "waves.toml", "-o", "a.nc", "--quiet")
