@@ -1,7 +1,7 @@
 """A queue on this computer: jobs are real, and a plan says which of them go wrong.
 
-It has the commands of SLURM, PBS and LSF; its folder is in the environment. A plan is a JSON
-object: number of a job -> what happens to it.
+It has the commands of SLURM, PBS and LSF; its folder is in the environment. The tasks of an array
+are numbered like jobs. A plan is a JSON object: number of a job -> what happens to it.
 
     refuse      it is not accepted
     lose        it is accepted, and never heard of again
@@ -24,6 +24,7 @@ from contextlib import suppress
 from pathlib import Path
 
 FOLDER = "FAKE_QUEUE"
+INDICES = ("SLURM_ARRAY_TASK_ID", "PBS_ARRAY_INDEX", "LSB_JOBINDEX")
 LATE_SECONDS = 1.0
 _POLL_SECONDS = 0.02
 
@@ -66,8 +67,13 @@ class FakeQueue:
 
     @property
     def alive(self):
-        """Numbers of the jobs that wait or run."""
-        return [int(path.name) for path in (self.folder / "alive").iterdir()]
+        """Names of the jobs that wait or run: a number, with an index in an array."""
+        return [path.name for path in (self.folder / "alive").iterdir()]
+
+    @property
+    def arrays(self):
+        """Number of arrays that were submitted."""
+        return len({path.name.partition("_")[0] for path in self.folder.glob("job-*_*.sh")})
 
     @property
     def rows(self):
@@ -75,34 +81,44 @@ class FakeQueue:
         return [path.read_text().strip() for path in (self.folder / "done").iterdir()]
 
 
+_ARRAY = re.compile(rb"^#(?:SBATCH --array=|PBS -J |BSUB -J \S+\[)1-(\d+)", re.MULTILINE)
+
+
 def _submit(folder, script="/dev/stdin"):
+    text = Path(script).read_bytes()
+    array = _ARRAY.search(text)
+    tasks = int(array[1]) if array else 1
     with (folder / "number").open("r+") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
-        number = int(file.read()) + 1
+        first = int(file.read()) + 1
         file.seek(0)
-        file.write(str(number))
-    fault = json.loads((folder / "plan.json").read_text()).get(str(number), "")
-    if fault in ("refuse", "lose", "late"):
-        _note(folder, fault)
-    if fault == "refuse":
+        file.write(str(first + tasks - 1))
+    plan = json.loads((folder / "plan.json").read_text())
+    faults = [plan.get(str(first + i), "") for i in range(tasks)]
+    for fault in faults:
+        if fault in ("refuse", "lose", "late"):
+            _note(folder, fault)
+    if "refuse" in faults:
         sys.exit("sbatch: error: QOSMaxSubmitJobPerUserLimit")
-    print(f"Submitted batch job {number}")
-    if fault == "lose":
-        return
-    if fault == "kill-row":
-        (folder / "hold" / str(number)).touch()
-    job = folder / f"job-{number}.sh"
-    job.write_bytes(Path(script).read_bytes())
-    command = [sys.executable, __file__, "run", str(job), str(number), fault]
-    nowhere = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
-    runner = subprocess.Popen(command, start_new_session=True, **nowhere)
-    (folder / "alive" / str(number)).write_text(str(runner.pid))
+    print(f"Submitted batch job {first}{'[]' if array else ''}")
+    for i, fault in enumerate(faults):
+        if fault == "lose":
+            continue
+        if fault == "kill-row":
+            (folder / "hold" / str(first + i)).touch()
+        name = f"{first}_{i + 1}" if array else str(first)
+        job = folder / f"job-{name}.sh"
+        job.write_bytes(text)
+        command = [sys.executable, __file__, "run", str(job), str(first + i), fault, name]
+        nowhere = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+        runner = subprocess.Popen(command, start_new_session=True, **nowhere)
+        (folder / "alive" / name).write_text(str(runner.pid))
 
 
-def _run(folder, job, number, fault):
+def _run(folder, job, number, fault, name):
     import psutil
 
-    alive, begun = folder / "alive" / number, folder / "begun" / number
+    alive, begun = folder / "alive" / name, folder / "begun" / number
     text, process = Path(job).read_text(), None
 
     def end(*_):
@@ -123,7 +139,8 @@ def _run(folder, job, number, fault):
         time.sleep(LATE_SECONDS)
     output = re.search(r"#[A-Z]+ -o (\S+)", text)[1].replace("%J", number)
     with open(output + f"o{number}" * output.endswith("/"), "wb") as log:
-        environment = os.environ | {"JOB": number}
+        index = dict.fromkeys(INDICES, name.partition("_")[2])
+        environment = os.environ | {"JOB": number} | index
         process = subprocess.Popen(
             ["bash", job], stdout=log, stderr=log, env=environment, start_new_session=True
         )
@@ -143,19 +160,27 @@ def _note(folder, fault):
         file.write(f"{fault}\n")
 
 
-def _list(folder, *_):
-    print("\n".join(path.name for path in (folder / "alive").iterdir()))
+def _listing(written):
+    def print_jobs(folder, *_):
+        names = [path.name.partition("_") for path in (folder / "alive").iterdir()]
+        print("\n".join({written(job, index) for job, _, index in names}))
+
+    return print_jobs
 
 
 def _cancel(folder, *numbers):
     for number in numbers:
-        with suppress(OSError, ValueError):
-            os.kill(int((folder / "alive" / number).read_text()), signal.SIGTERM)
+        name = number.replace("[", "_").rstrip("]")
+        for path in [folder / "alive" / name, *(folder / "alive").glob(f"{name}_*")]:
+            with suppress(OSError, ValueError):
+                os.kill(int(path.read_text()), signal.SIGTERM)
 
 
 COMMANDS = {
     **dict.fromkeys(("sbatch", "qsub", "bsub"), _submit),
-    **dict.fromkeys(("squeue", "qselect", "bjobs"), _list),
+    "squeue": _listing(lambda job, index: f"{job}_{index}" if index else job),
+    "qselect": _listing(lambda job, index: f"{job}[].here" if index else f"{job}.here"),
+    "bjobs": _listing(lambda job, index: f"{job}     {index or 0}"),
     **dict.fromkeys(("scancel", "qdel", "bkill"), _cancel),
 }
 

@@ -48,11 +48,20 @@ _REFUSALS = 3  # in succession, without any job left
 _WASTED = 10  # jobs in succession that ended before they could compute
 
 _LISTINGS = {
-    "slurm": ("squeue", "--noheader", "--format=%A", "--user"),
+    "slurm": ("squeue", "--noheader", "--array", "--format=%i", "--user"),
     "pbs": ("qselect", "-u"),
-    "lsf": ("bjobs", "-noheader", "-o", "jobid", "-u"),
+    "lsf": ("bjobs", "-noheader", "-o", "jobid jobindex", "-u"),
 }
-"""Commands that print the numbers of the jobs of a user that wait or run."""
+"""Commands that print the numbers of the jobs of a user that wait or run, and of their tasks: such
+as ``12_3``, ``12 3``, and for PBS only ``12[]``."""
+
+_ARRAYS = {
+    "slurm": ("--array=1-{}", "$SLURM_ARRAY_TASK_ID", "{}_{}"),
+    "pbs": ("-J 1-{}", "$PBS_ARRAY_INDEX", "{}[{}]"),
+    "lsf": ("", "$LSB_JOBINDEX", "{}[{}]"),
+}
+"""Option that makes a job an array of tasks, the index of a task in it, and the number by which a
+task is cancelled. Of LSF, the name of a job says that it is an array."""
 
 _SCHEDULER = {
     "distributed.scheduler.http.routes": [],
@@ -115,7 +124,7 @@ def queued_workers(
             cluster = stack.enter_context(kind(**options, **job))
         except (RuntimeError, ValueError) as error:  # such as of its interface
             raise InputError(f"{where}: {one_line(error)}") from None
-        queue = _Queue(cluster, table.system, jobs, where, say)
+        queue = _Queue(cluster, table, jobs, where, say)
         client = stack.enter_context(client_of(cluster))
         crew = Workers(client, workload, row_limit, keep_up=queue.keep_up, death=death)
         stack.enter_context(undone(queue.end))
@@ -205,7 +214,7 @@ class _Queue(SchedulerPlugin):
     ----------
     cluster : dask_jobqueue.JobQueueCluster
         With a scheduler to which the jobs connect; it starts none itself.
-    system : str
+    table : QueueTable
     most : int
         Jobs at the same time.
     where : str
@@ -220,13 +229,13 @@ class _Queue(SchedulerPlugin):
     """
 
     def __init__(
-        self, cluster: "JobQueueCluster", system: str, most: int, where: str, say: Say
+        self, cluster: "JobQueueCluster", table: QueueTable, most: int, where: str, say: Say
     ) -> None:
         self._cluster, self._say = cluster, say
         self._job_class, self._options = cluster.new_spec["cls"], cluster.new_spec["options"]
-        self._listing = [*_LISTINGS[system], getpass.getuser()]
-        self._most, self._where = most, where
-        self._jobs: dict[str, Job] = {}  # that wait or run, by the name of their worker
+        self._table, self._most, self._where = table, most, where
+        # That wait or run, by the name of their worker, with the index of the task in an array.
+        self._jobs: dict[str, tuple[Job, str]] = {}
         self._names: dict[str, str] = {}  # of workers, by address
         self._connected, self._ended = set[str](), set[str]()
         self._number = self.wasted = self._refusals = 0
@@ -268,11 +277,14 @@ class _Queue(SchedulerPlugin):
         waiting = [name for name in self._jobs if name not in self._connected]
         if not waiting:
             return
-        listed = self._run(*self._listing)
+        listed = self._run(*_LISTINGS[self._table.system], getpass.getuser())
         if listed is None:  # the queue does not answer: nothing is known about its jobs
             return
-        numbers = set(re.findall(r"^\s*(\d+)", listed, re.MULTILINE))
-        lost = [name for name in waiting if self._jobs[name].job_id not in numbers]
+        pairs = re.findall(r"^\s*(\d+)(?:[_[ ]+0*(\d*))?", listed, re.MULTILINE)
+        numbers = {pair for job, index in pairs for pair in ((job, index), (job, ""))}
+        by_task = self._table.system != "pbs"
+        jobs = {name: (job.job_id, index * by_task) for name, (job, index) in self._jobs.items()}
+        lost = [name for name in waiting if jobs[name] not in numbers]
         lost = [name for name in lost if name not in self._connected]  # meanwhile
         self._drop(lost)
         self.wasted += len(lost)
@@ -283,18 +295,22 @@ class _Queue(SchedulerPlugin):
             )
 
     def _add(self, count: int) -> None:
-        """Submit jobs."""
+        """Submit jobs, or an array of them."""
+        size = count if self._table.arrays else 1
         new = {}
-        for _ in range(count):
+        for _ in range(0, count, size):
             self._number += 1
             name = f"{self._cluster.name}-{self._number}"
-            address = self._cluster.scheduler_address
-            new[name] = self._job_class(address, name=name, **self._options)
-        self._jobs |= new
-        outcomes = self._cluster.sync(self._submitted, list(new.values()))
+            options = self._options if size == 1 else self._options | self._of_array(name, size)
+            job = self._job_class(self._cluster.scheduler_address, name=name, **options)
+            tasks = {f"{name}-{i}": (job, str(i)) for i in range(1, size + 1)}
+            new[job] = tasks if size > 1 else {name: (job, "")}
+            self._jobs |= new[job]
+        outcomes = self._cluster.sync(self._submitted, list(new))
         refused = [pair for pair in zip(new, outcomes, strict=True) if pair[1]]
-        for name, _ in refused:
-            del self._jobs[name]
+        for job, _ in refused:
+            for name in new[job]:
+                del self._jobs[name]
         if not refused:
             self._refusals = 0
             return
@@ -310,6 +326,19 @@ class _Queue(SchedulerPlugin):
         if first or self._refusals >= _REFUSALS:
             raise RunError(f"{self._where}: '{command}' refuses jobs: {reason}")
 
+    def _of_array(self, name: str, size: int) -> dict[str, Any]:
+        """Return the options of a job that is an array of tasks, each with a worker of its own."""
+        directive, index, _ = _ARRAYS[self._table.system]
+        options = self._options
+        return {
+            "job_name": options["job_name"] + ("" if directive else f"[1-{size}]"),
+            "job_extra_directives": [
+                *([directive.format(size)] if directive else []),
+                *options["job_extra_directives"],
+            ],
+            "worker_extra_args": [*options["worker_extra_args"], "--name", f"{name}-{index}"],
+        }
+
     async def _submitted(self, jobs: "list[Job]") -> list[BaseException | None]:
         """Submit jobs; return what each of them failed with."""
         async with self._submitting:
@@ -324,7 +353,12 @@ class _Queue(SchedulerPlugin):
     def _drop(self, names: list[str]) -> None:
         """Cancel jobs, also those that seem to have ended."""
         jobs = [self._jobs.pop(name) for name in names]
-        if numbers := [job.job_id for job in jobs if job.job_id]:
+        task = _ARRAYS[self._table.system][2]
+        if numbers := [
+            task.format(job.job_id, index) if index else job.job_id
+            for job, index in jobs
+            if job.job_id
+        ]:
             self._run(self._job_class.cancel_command, *numbers)
 
     def _run(self, *command: str) -> str | None:

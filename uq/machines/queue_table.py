@@ -36,6 +36,7 @@ class QueueTable(BaseModel):
     nodes: Annotated[Count, Field(description="of a job")] = 1
     jobs: Annotated[Count, Field(description="at the same time, unless --workers says")] = 10
     rows_per_job: Annotated[Count, Field(description="after which a job ends")] = 1
+    arrays: Annotated[bool, Field(description="submit jobs as job arrays")] = False
     partition: Annotated[_Line, Field(description="partition or queue that takes the jobs")] = ""
     account: Annotated[_Line, Field(description="account or project that pays")] = ""
     interface: Annotated[_Line, Field(description="network of the nodes, such as ib0")] = ""

@@ -128,6 +128,42 @@ def test_other_queueing_systems_run_jobs(queue_of, system):
     check(queue, plan, run(workers=1))
 
 
+ARRAYS = "arrays = true\n"
+
+
+@pytest.mark.parametrize("system", ["slurm", "pbs", pytest.param("lsf", marks=pytest.mark.slow)])
+def test_arrays_run_jobs(queue_of, system):
+    plan = {1: "lose", 2: "late", 3: "kill"}
+    queue = queue_of(plan, machine=MACHINE.replace("slurm", system) + ARRAYS, samples=3)
+    check(queue, plan, run(workers=3))
+    assert queue.arrays >= 1
+
+
+@pytest.mark.slow
+def test_arrays_of_200_jobs_with_24_faults(queue_of):
+    faults = [fault for fault in ("kill-row", "kill", "lose", "late") for _ in range(6)]
+    plan = random_plan(faults, 200)
+    queue = queue_of(plan, machine=MACHINE + ARRAYS, samples=182)
+    check(queue, plan, run(workers=8))
+    assert queue.submitted == 200 and queue.arrays > 20
+
+
+@pytest.mark.slow
+def test_an_array_that_is_refused_is_submitted_again(queue_of):
+    queue = queue_of({4: "refuse"}, machine=MACHINE + ARRAYS, samples=6)
+    lines = []
+    ds = run(workers=3, say=lines.append)
+    assert any("'sbatch' refuses more jobs for now" in line for line in lines)
+    assert len(queue.rows) == 6 and not queue.alive and ds.identical(computed_here(queue))
+
+
+def test_the_tasks_of_an_array_are_cancelled_when_the_run_ends(queue_of, folder):
+    queue = queue_of({1: "kill-row"}, machine=MACHINE + ARRAYS, samples=3)
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}):
+        run(workers=3)
+    assert queue.arrays == 1 and not queue.alive
+
+
 def test_an_interrupted_run_cancels_its_jobs_and_resumes(queue_of, folder):
     queue = queue_of(machine=MACHINE + "rows_per_job = 2\n", samples=4)
 
@@ -261,6 +297,7 @@ TABLE = QueueTable(
     cores=8,
     nodes=2,
     memory="16GB",
+    arrays=True,
     walltime="02:00:30",
     account="rods",
     directives=["-X"],
