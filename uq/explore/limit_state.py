@@ -1,4 +1,4 @@
-"""EventLimit-state function: distance of rows beyond a threshold, in standard normal space."""
+"""Limit-state function: distance of rows beyond a threshold, in standard normal space."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -107,7 +107,7 @@ def scale_of(limit: EventLimit, margin: Floats) -> MarginScale:
 
 
 class LimitState:
-    """EventLimit-state function: distance of rows beyond a threshold.
+    """Limit-state function: distance of rows beyond a threshold.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ class LimitState:
 
 
 class SystemState(LimitState):
-    """EventLimit-state function of a system event: any or all of several limits.
+    """Limit-state function of a system event: any or all of several limits.
 
     Parameters
     ----------
