@@ -19,7 +19,7 @@ from uq.result.result import Result
 from uq.stats.estimate import Estimate, failed_bounds_text, interval_text, value_text
 from uq.text.numbers import counted, in_brackets, percent, threshold
 from uq.text.quantities import read_threshold
-from uq.text.units import typical, unit_of
+from uq.text.units import beside, typical, unit_of
 
 _SHOWN = 6  # sizes of each estimate on a terminal
 
@@ -98,7 +98,8 @@ def emulate(result: Path, path: Path, outputs: Sequence[str], json: bool) -> Non
     lines = []
     for name, numbers in facts["outputs"].items():
         if not numbers["refused"]:
-            lines.append((name, numbers["kind"], *_errors(numbers)))
+            unit = emulator.outputs[name]["unit"]
+            lines.append((name, numbers["kind"], *_errors(numbers, unit)))
     grid(lines, header=("", "kind", "Q2", "error", "wrong label"))
     for name, numbers in facts["outputs"].items():
         if numbers["refused"]:
@@ -116,14 +117,19 @@ def emulate(result: Path, path: Path, outputs: Sequence[str], json: bool) -> Non
     )
 
 
-def _errors(numbers: Mapping[str, Any]) -> tuple[str, str, str]:
+def _short(error: float, unit: str) -> str:
+    readable = unit_of(unit, error)
+    return beside(f"{error / readable.size:.2g}", readable.name)
+
+
+def _errors(numbers: Mapping[str, Any], unit: str) -> tuple[str, str, str]:
     """Return the share of the variance that is explained, the error, and the wrong labels."""
     wrong = percent(numbers["misclassified"]) if "misclassified" in numbers else ""
     if numbers["q2"] is None:
         return "", "", wrong
     error = numbers["error_sd"]
-    relative = percent(error) if numbers.get("logarithm") else f"{error:.2g}"
-    return f"{numbers['q2']:.4f}", relative, wrong
+    in_unit = percent(error) if numbers.get("logarithm") else _short(error, unit)
+    return f"{numbers['q2']:.4f}", in_unit, wrong
 
 
 def convergence(result: Path, output: str | None, json: bool) -> None:

@@ -41,18 +41,26 @@ def show(result: Result, sensitivities: Sensitivities) -> None:
         if target_indices.refused:
             paragraph(target_indices.refused, indent=2)
             continue
-        for table in (target_indices.kinds(), target_indices.kinds(of_pairs=True)):
+        for of_pairs in (False, True):
+            table = target_indices.kinds(of_pairs=of_pairs)
             if table:
                 header = (text for kind in table for text in (kind.key, "95 % interval"))
                 remark = ("",) * bool(target_indices.indices.by_correlation)
-                grid(
-                    _lines(table, target_indices.indices, unit.size), header=("", *header, *remark)
-                )
+                shown = list(_lines(table, target_indices.indices, unit.size))
+                most = _MOST_PAIRS if of_pairs else len(shown)
+                grid(shown[:most], header=("", *header, *remark))
+                if rest := shown[most:]:
+                    pairs = counted(len(rest), "more pair")
+                    paragraph(f"{pairs}, none above {rest[0][1]}, are in --json", indent=2)
         if noise := target_indices.indices.noise:
             share = (S1.text(noise.value), S1.interval(noise))
             grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
         for text in target_indices.indices.notes:
             paragraph(text, indent=2)
+
+
+_MOST_PAIRS = 12
+"""Pairs of inputs that are printed: those with the largest indices."""
 
 
 def _is_effect(kind: IndexKind) -> bool:

@@ -303,10 +303,13 @@ def _weighted(explained: Mapping[tuple[int, ...], Floats], weight: Weight, n: in
 
 
 def _between(explained: Floats, error: Floats, total: Floats, t: float) -> Estimate:
-    """Return a ratio of means, with an interval from no error to all of it due to an input."""
+    """Return a ratio of means, with an interval from no error to all of it due to an input.
+
+    The interval does not leave that from 0 to 1, to which indices belong, but contains the value.
+    """
     value, low, _ = _ratio(explained, total, t)
     _, _, high = _ratio(explained + error, total, t)
-    return Estimate(value, low, high)
+    return Estimate(value, max(low, min(value, 0.0)), min(high, max(value, 1.0)))
 
 
 def _ratio(part: Floats, total: Floats, t: float) -> tuple[float, float, float]:

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from computed import asking, linear, summarised, with_output, with_status
+from computed import asking, computed, linear, study_of, summarised, with_output, with_status
+from limit_states import PARTS
 
 from uq.contract import Status
 from uq.files.whole_files import write_result
@@ -94,3 +95,17 @@ def test_pairs_have_a_table_of_their_own_without_an_input_without_effect(printed
     assert labels.count("(an input without effect)") == 1
     assert labels.index("S2") > labels.index("(an input without effect)")
     assert {label for label in labels if "," in label} >= {"x1,x2", "x3,x4"}
+
+
+def test_of_many_pairs_the_largest_are_printed_and_the_others_counted(printed):
+    tables = {
+        "study": {"name": "pulse", "model": "oscillator"},
+        "design": {"method": "monte-carlo", "samples": 100, "seed": 3},
+        "uncertain": PARTS,
+        "analysis": {"sensitivity": ["chaos"]},
+    }
+    lines = printed("sensitivity", computed(study_of(tables, "limit_states:OSCILLATOR")))
+    pairs = [line for line in lines if "," in line[0] and len(line) > 1]
+    values = [float(line[1:][-2] or line[-1].split()[0]) for line in pairs]
+    assert len(pairs) == 12 and values == sorted(values, reverse=True)
+    assert any(line[0].startswith("3 more pairs, none above 0.0") for line in lines)

@@ -49,6 +49,16 @@ def test_indices_of_ishigami_are_within_narrow_intervals_from_150_rows():
         assert index.low <= truth <= index.high < index.low + 0.05
 
 
+def test_intervals_stay_between_0_and_1_where_nothing_can_be_learnt():
+    noise = np.random.default_rng(3).random(60)
+    values = chaos_indices(sample_of(lambda *x: noise, ("uniform",) * 4, 60, 1)).values
+    for indices in values.values():
+        for index in indices.values():
+            assert index.low <= index.value <= index.high
+            assert min(index.value, 0.0) <= index.low and index.high <= max(index.value, 1.0)
+            assert index.low <= 0.0 <= index.high
+
+
 def test_intervals_cover_where_the_output_has_a_long_tail():
     """Of 40 samples of 100 rows of a lognormal output, whose inputs explain 96.1 and 3.9 %."""
     held = []
