@@ -2,12 +2,11 @@
 
 import hashlib
 import json
-from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,7 @@ from uq.contract import (
 )
 from uq.errors import InputError
 from uq.files.whole_files import file_there
-from uq.machines.row_by_row import NoSettings
+from uq.machines.row_by_row import Fields, NoSettings, parameters_of
 from uq.sampling.unit_cube import hashed, uniform
 from uq.stats.regressions import FOLDS, Predictor, Regression, Scale, ScaledInputs, scaled
 from uq.text.numbers import number
@@ -367,7 +366,7 @@ def model_of_emulator(
     parameters, settings = (
         (origin.parameters, origin.settings)
         if origin and set(origin.parameter_names) == set(emulator.parameters)
-        else (_parameters_of(emulator), NoSettings)
+        else (parameters_of(_fields_of(emulator)), NoSettings)
     )
     names: tuple[str, ...] = parameters._fields  # type: ignore[attr-defined]
 
@@ -405,28 +404,15 @@ def _with_tuples(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return {k: tuple(v) if isinstance(v, list) else v for k, v in attributes.items()}
 
 
-def _parameters_of(emulator: Emulator) -> type:
-    parameters = emulator.parameters
-    # Of a model that is not installed, the nominal value of what varies in its rows is not known.
-    defaults = [
-        float("nan") if declared["value"] is None else declared["value"]
-        for declared in parameters.values()
-    ]
-    made: Any = namedtuple("Parameters", parameters, defaults=defaults)  # type: ignore[misc]
-    made.__annotations__ = {
-        name: Annotated[
-            float,
-            Parameter(
-                declared["symbol"],
-                declared["unit"],
-                declared["meaning"],
-                (declared["bounds"][0], declared["bounds"][1]),
-                declared["source"],
-            ),
-        ]
-        for name, declared in parameters.items()
-    }
-    return made
+def _fields_of(emulator: Emulator) -> Fields:
+    fields = {}
+    for name, declared in emulator.parameters.items():
+        words = declared["symbol"], declared["unit"], declared["meaning"]
+        parameter = Parameter(*words, tuple(declared["bounds"]), declared["source"])
+        # Of a model that is not installed, nominal values of what varies in its rows are unknown.
+        value = declared["value"]
+        fields[name] = parameter, float("nan") if value is None else value
+    return fields
 
 
 def _other_settings(emulator: Emulator, choices: Mapping[str, Any]) -> str:

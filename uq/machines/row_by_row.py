@@ -68,9 +68,6 @@ def model_from(
     parameters = {field: parameter for field, (parameter, _) in fields.items()}
     if faults := [*faults, *defaults.faults(parameters, returned)]:
         raise InputError(*(f"machine '{name}': {fault}" for fault in faults))
-    nominal = [value for _, value in fields.values()]
-    made: Any = namedtuple("Parameters", fields, defaults=nominal)  # type: ignore[misc]
-    made.__annotations__ = {field: Annotated[float, fields[field][0]] for field in fields}
     axes: dict[str, list[int]] = {}
     for output, declaration in returned.items():
         axes |= dimensions(output, declaration.shape)
@@ -78,7 +75,7 @@ def model_from(
         name,
         title,
         version,
-        made,
+        parameters_of(fields),
         NoSettings,
         {output: declaration.output(output) for output, declaration in returned.items()},
         batch,
@@ -88,6 +85,14 @@ def model_from(
         row_name=(defaults.row_name[0], defaults.row_name[1]),
         uncertain=defaults.uncertain,
     )
+
+
+def parameters_of(fields: Fields) -> type:
+    """Return the type of the parameters of a model (`uq.contract.Model`)."""
+    nominal = [value for _, value in fields.values()]
+    made: Any = namedtuple("Parameters", fields, defaults=nominal)  # type: ignore[misc]
+    made.__annotations__ = {field: Annotated[float, fields[field][0]] for field in fields}
+    return made
 
 
 def _nominal_faults(fields: Fields, returned: Mapping[str, Returned]) -> Iterator[str]:
