@@ -20,7 +20,7 @@ from uq.stats.estimate import Estimate
 from uq.stats.intervals import is_constant, upper_probability
 from uq.stats.moments import OUTLYING_SQUARES
 from uq.stats.quantile_functions import student
-from uq.stats.regressions import components, fit_chaos
+from uq.stats.regressions import components, fit_chaos, standard_moment
 
 EXPLAINED = 0.8
 """Smallest explained share of the held-out variance for which an expansion is accepted."""
@@ -188,6 +188,9 @@ def hdmr_indices(sample: DesignSample) -> Indices:
 
 
 _FOLDS = 5
+_UNEXPLAINED = 0.5  # largest share of the variance
+_ROUNDING = 1e-12
+_LONG_TAIL = 5.0  # kurtosis of an output that grows with normal inputs
 
 
 def chaos_indices(sample: DesignSample) -> Indices:
@@ -207,11 +210,15 @@ def chaos_indices(sample: DesignSample) -> Indices:
     Raises
     ------
     RefusedError
-        An input is discrete, or without a stated law.
+        An input is discrete, or without a stated law, or the expansion explains less than half of
+        the variance.
 
     Notes
     -----
-    The rows are divided into five parts. An expansion f of the rows of four parts [1]_ is a sum of
+    The rows are divided into five parts. Inputs are scores of normal or uniform laws; polynomials
+    of normal ones have a degree of 4 at most, since higher ones grow beyond the rows, where nothing
+    corrects them. Uniform scores of all inputs are tried, too, unless the output has a long tail.
+    The better expansion f of the rows of four parts [1]_ is a sum of
     uncorrelated components f_v, each of the inputs v alone. With r = y - f in the rows of the fifth
     part, which f does not know, the component of the output has the variance
     Var(f_v) + 2 E[f_v r] + e, and e lies between 0 and Var(r). The first two are means over rows
@@ -228,15 +235,16 @@ def chaos_indices(sample: DesignSample) -> Indices:
     if without := [name for name in sample.inputs if name not in sample.normal]:
         raise RefusedError(f"'{without[0]}' has no continuous law, which polynomials need")
     y, names = (sample.values - sample.values.mean()) / sample.values.std(), list(sample.inputs)
-    z, uniform = _standard(sample)
+    standards = _standards(sample)
     n = len(y)
     part = np.random.default_rng(0).permutation(n) % _FOLDS
     explained: dict[tuple[int, ...], Floats] = {}
     total, error = np.empty(n), np.empty(n)
     for fold in range(_FOLDS):
         inside = part == fold
-        fit = fit_chaos(z[~inside], y[~inside], uniform)
-        parts = components(fit, z[inside], uniform)
+        fits = [(fit_chaos(z[~inside], y[~inside], flat), z, flat) for z, flat in standards]
+        fit, z, flat = min(fits, key=lambda candidate: candidate[0]["error"])
+        parts = components(fit, z[inside], flat)
         prediction = sum((values for _, values in parts.values()), np.zeros(inside.sum()))
         rest = y[inside] - prediction
         error[inside] = (rest - rest.mean()) ** 2
@@ -244,6 +252,11 @@ def chaos_indices(sample: DesignSample) -> Indices:
             explained.setdefault(inputs, np.zeros(n))[inside] = variance + 2 * values * rest
         sums = [explained[inputs][inside] for inputs in parts if inputs]
         total[inside] = np.sum(sums, axis=0) + error[inside]
+    if error.mean() > _UNEXPLAINED:
+        raise RefusedError(
+            f"polynomials leave {error.mean():.0%} of the variance of rows held out unexplained;"
+            f" {_UNEXPLAINED:.0%} are the most"
+        )
     explained.pop((), None)
     t = float(student(upper_probability(sample.confidence), n - 1))
     indices = {
@@ -261,16 +274,26 @@ def chaos_indices(sample: DesignSample) -> Indices:
     return Indices(indices, (note,))
 
 
-def _standard(sample: DesignSample) -> tuple[Floats, tuple[bool, ...]]:
-    """Return inputs as standard normal, or uniform on [-1, 1] where these are nearer to linear."""
-    columns, uniform = list[Floats](), list[bool]()
-    for name, values in sample.inputs.items():
-        normal = sample.normal[name](values)
-        flat = 2 * ndtr(normal) - 1
-        correlations = [abs(np.corrcoef(values, scores)[0, 1]) for scores in (normal, flat)]
-        uniform.append(bool(correlations[1] > correlations[0]))
-        columns.append(flat if uniform[-1] else normal)
-    return np.column_stack(columns), tuple(uniform)
+def _standards(sample: DesignSample) -> list[tuple[Floats, tuple[bool, ...]]]:
+    """Return the inputs, shape (n, d), as scores of laws, and which of these are uniform.
+
+    First all as uniform on [-1, 1], then as standard normal where these are nearer to linear.
+    """
+    scores = {name: sample.normal[name](values) for name, values in sample.inputs.items()}
+    flat = {name: 2 * ndtr(normal) - 1 for name, normal in scores.items()}
+    uniform = [
+        abs(np.corrcoef(values, flat[name])[0, 1]) > abs(np.corrcoef(values, scores[name])[0, 1])
+        for name, values in sample.inputs.items()
+    ]
+    choices = [tuple(map(bool, uniform))]
+    if standard_moment(sample.values, 4) < _LONG_TAIL:
+        choices.append((True,) * len(scores))
+    standards = []
+    for flags in dict.fromkeys(choices):
+        pairs = zip(scores, flags, strict=True)
+        columns = [(flat if is_flat else scores)[name] for name, is_flat in pairs]
+        standards.append((np.column_stack(columns), flags))
+    return standards
 
 
 Weight = Callable[[tuple[int, ...]], float]
@@ -317,7 +340,7 @@ def _ratio(part: Floats, total: Floats, t: float) -> tuple[float, float, float]:
     value = float(part.mean() / total.mean())
     influence = (part - value * total) / total.mean() / len(total)
     half = t * influence.std(ddof=1) * len(total) ** 0.5
-    half += OUTLYING_SQUARES * np.abs(influence).max()
+    half += OUTLYING_SQUARES * np.abs(influence).max() + _ROUNDING
     return value, float(value - half), float(value + half)
 
 

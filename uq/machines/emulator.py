@@ -24,14 +24,12 @@ from uq.errors import InputError
 from uq.files.whole_files import file_there
 from uq.machines.row_by_row import Fields, NoSettings, parameters_of
 from uq.sampling.unit_cube import hashed, uniform
-from uq.stats.regressions import FOLDS, Predictor, Regression, Scale, ScaledInputs, scaled
+from uq.stats.regressions import BEYOND, FOLDS, Predictor, Regression, Scale, ScaledInputs, scaled
 from uq.text.numbers import number
 
 FORMAT = 1
 VALUE, NEVER, CENSORED, UNDEFINED = "value", "never", "censored", "undefined"
 """States of an element of an output in a row."""
-
-_BEYOND = 0.25  # share of the range of its rows by which an input may leave it
 
 
 class Classifier(NamedTuple):
@@ -232,8 +230,9 @@ class EmulatedRows:
                     int(i),
                     f"{name} differs from {other}; in the rows of the emulator it does not",
                 )
-        for column, scale in zip(z.T, self.emulator.scales, strict=True):
-            margin = _BEYOND * (scale.high - scale.low)
+        scales = [] if self.cross_fitted else self.emulator.scales
+        for column, scale in zip(z.T, scales, strict=not self.cross_fitted):
+            margin = BEYOND * (scale.high - scale.low)
             within = (column >= scale.low - margin) & (column <= scale.high + margin)
             for i in np.flatnonzero(~within):
                 value = number(float(columns[scale.name][i]))

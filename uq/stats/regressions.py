@@ -17,6 +17,9 @@ from uq.errors import InputError
 MOST_TERMS = 500
 """Largest number of polynomials among which terms are selected."""
 
+BEYOND = 0.25
+"""Share of the range of the rows by which an input may leave it."""
+
 FOLDS = 5
 """Number of parts of the rows that are predicted, each from the rows of the others."""
 
@@ -25,6 +28,7 @@ MOST_OF_PROCESS = 600
 
 _FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estimated
 _DEGREE = 16
+_DEGREE_OF_NORMAL = 4  # higher ones grow without a row to stop them
 _NUGGET = 0.01  # from which its estimate starts
 _NUGGETS = (1e-6, 1e-4, 1e-2)  # with which a covariance is factorised in the end
 _ROWS_PER_TERM = (4.0, 2.0, 1.0, 0.5)  # among which terms are selected
@@ -120,9 +124,15 @@ def _basis(uniform: tuple[bool, ...]) -> Any:
     ot = openturns()
     factors = [ot.LegendreFactory() if flat else ot.HermiteFactory() for flat in uniform]
     enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(uniform), 0.6)
+    enumerate_terms.setUpperBound(_degrees(uniform))
     return ot.OrthogonalProductPolynomialFactory(
         [ot.OrthogonalUniVariatePolynomialFamily(factor) for factor in factors], enumerate_terms
     )
+
+
+def _degrees(uniform: tuple[bool, ...]) -> list[int]:
+    """Return the largest degree in each input."""
+    return [_DEGREE if flat else _DEGREE_OF_NORMAL for flat in uniform]
 
 
 def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Fit:
@@ -143,8 +153,10 @@ def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Fit:
     results, most = [], 0
     for degree in range(1, _DEGREE + 1):
         if most < MOST_TERMS:  # to count the polynomials of many inputs takes minutes
-            most = basis.getEnumerateFunction().getBasisSizeFromTotalDegree(degree)
+            with suppress(RuntimeError):  # all are counted
+                most = basis.getEnumerateFunction().getBasisSizeFromTotalDegree(degree)
     most = min(most, MOST_TERMS)
+    constant = {"terms": [0], "coefficients": [float(y.mean())], "error": float(y.var())}
     for size in sorted({min(most, int(len(y) / few)) for few in _ROWS_PER_TERM}):
         algorithm = ot.FunctionalChaosAlgorithm(
             ot.Sample(z),
@@ -153,12 +165,16 @@ def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Fit:
             ot.FixedStrategy(basis, size),
             ot.LeastSquaresStrategy(selection),
         )
-        algorithm.run()
-        results.append(algorithm.getResult())
+        with suppress(RuntimeError, TypeError):  # terms that the rows do not tell apart
+            algorithm.run()
+            results.append(algorithm.getResult())
+    if not results:
+        return constant
     result = min(results, key=lambda result: min(result.getErrorHistory()))
     return {
         "terms": [int(i) for i in result.getIndices()],
         "coefficients": [float(c) for c in np.array(result.getCoefficients())[:, 0]],
+        "error": float(min(result.getErrorHistory())),
     }
 
 
@@ -393,22 +409,34 @@ class Predictor:
         self._inputs = inputs._replace(z=inputs.z[rows], parts=inputs.parts[rows])
         self._y = np.array(regression.values)
         self._part = cache(self._prepared)
-        self.standard_errors = np.array(regression.errors) / np.array(regression.deviations)
+        # Where rows are close together, a process predicts far smaller ones than its errors.
+        self._least = float(np.mean(regression.deviations))
+        self.standard_errors = regression.errors / np.maximum(regression.deviations, self._least)
 
     def _prepared(self, part: int) -> Predict:
         """Return the prediction from all rows (-1), or from those of all parts but one."""
         z, parts, uniform = self._inputs
         kept = parts != part
         fit = self.regression.fit if part < 0 else self.regression.folds[part]
-        return _KINDS[self.regression.kind][1](fit, z[kept], self._y[kept], uniform)
+        predict = _KINDS[self.regression.kind][1](fit, z[kept], self._y[kept], uniform)
+        if part < 0:
+            return predict
+        low, high = z[kept].min(axis=0), z[kept].max(axis=0)
+        margin = BEYOND * (high - low)
+        return lambda at: predict(np.clip(at, low - margin, high + margin))
 
     def __call__(self, z: Floats) -> tuple[Floats, Floats]:
         """Return means, and standard deviations up to a factor, shape (n,) each."""
         mean, sd = self._part(-1)(z)
+        sd = np.maximum(sd, self._least)
         return self.regression.mean + self.regression.sd * mean, self.regression.sd * sd
 
     def cross_fitted(self, z: Floats, parts: NDArray[np.int64]) -> Floats:
-        """Return means, each from the rows of all parts but that of the row, shape (n,)."""
+        """Return means, each from the rows of all parts but that of the row, shape (n,).
+
+        Rows far outside the others are predicted as at the edge: whether a row is there must not
+        depend on the row itself.
+        """
         mean = np.empty(len(z))
         for part in np.unique(parts):
             mean[parts == part] = self._part(int(part))(z[parts == part])[0]

@@ -49,14 +49,33 @@ def test_indices_of_ishigami_are_within_narrow_intervals_from_150_rows():
         assert index.low <= truth <= index.high < index.low + 0.05
 
 
-def test_intervals_stay_between_0_and_1_where_nothing_can_be_learnt():
+def test_intervals_stay_between_0_and_1_where_little_can_be_learnt():
     noise = np.random.default_rng(3).random(60)
-    values = chaos_indices(sample_of(lambda *x: noise, ("uniform",) * 4, 60, 1)).values
+    sample = sample_of(lambda a, *x: a + 1.2 * noise, ("uniform",) * 4, 60, 1)
+    values = chaos_indices(sample).values
     for indices in values.values():
         for index in indices.values():
             assert index.low <= index.value <= index.high
             assert min(index.value, 0.0) <= index.low and index.high <= max(index.value, 1.0)
-            assert index.low <= 0.0 <= index.high
+            assert index.high - index.low > 0.1
+
+
+def test_an_output_that_polynomials_do_not_explain_is_refused():
+    noise = np.random.default_rng(3).random(60)
+    with pytest.raises(RefusedError, match="polynomials leave 1..% of the variance of rows held"):
+        chaos_indices(sample_of(lambda *x: noise, ("uniform",) * 4, 60, 1))
+
+
+@pytest.mark.parametrize("rows", [100, 300])
+def test_intervals_cover_where_polynomials_of_normal_inputs_would_grow_beyond_the_rows(rows):
+    """Of 40 samples of sin(2 x1) + 0.7 x2, whose variances are (1 - exp(-8))/2 and 0.49."""
+    first = (1 - np.exp(-8)) / 2 / ((1 - np.exp(-8)) / 2 + 0.49)
+    held = []
+    for seed in range(40):
+        sample = sample_of(lambda a, b: np.sin(2 * a) + 0.7 * b, ("normal",) * 2, rows, seed)
+        index = chaos_indices(sample).values[S1]["x1"]
+        held.append(index.low <= first <= index.high < index.low + 0.3)
+    assert sum(held) >= 35
 
 
 def test_intervals_cover_where_the_output_has_a_long_tail():
