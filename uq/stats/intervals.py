@@ -115,7 +115,8 @@ def weighted_count_interval(
 
 def is_constant(values: Floats) -> bool:
     """Whether finite values are equal but for rounding."""
-    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
+    low, high = values.min(), values.max()
+    return bool(high - low <= ROUNDING * max(abs(low), abs(high)))
 
 
 def sized(values: Floats) -> tuple[Floats, float]:
