@@ -125,7 +125,9 @@ def sized(values: Floats) -> tuple[Floats, float]:
     Squares and fourth powers of the scaled values neither overflow nor underflow. Scaling by a
     power of two loses no digits.
     """
-    largest = np.abs(values).max(where=np.isfinite(values), initial=0.0)
+    largest = max(-values.min(initial=0.0), values.max(initial=0.0))
+    if not np.isfinite(largest):
+        largest = np.abs(values).max(where=np.isfinite(values), initial=0.0)
     size = 2.0 ** int(np.clip(np.frexp(largest)[1], -1000, 1000))
     return values / size, size
 
