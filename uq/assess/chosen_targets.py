@@ -249,7 +249,7 @@ def _named(result: Result, name: str, aggregated: bool) -> list[IndexTarget]:
     if is_whole(inside):
         every = list(wholes(_elements(result, output_in(inside)), every=True)) if aggregated else []
         return [target for target in every if target.name == name] or every[: not form]
-    candidates = list(targets_of(result, output_in(inside), every=True))
+    candidates = list(targets_of(result, output_in(inside), every=True, form=form))
     name = _as_stored(name, output_in(inside), candidates)
     if form:
         return [target for target in candidates if target.name == name]
@@ -290,7 +290,9 @@ def _elements(result: Result, name: str) -> list[Element]:
     return [] if result.is_category(name.partition("[")[0]) else result.named_elements(name)
 
 
-def targets_of(result: Result, name: str, every: bool = False) -> Iterator[IndexTarget]:
+def targets_of(
+    result: Result, name: str, every: bool = False, form: str | None = None
+) -> Iterator[IndexTarget]:
     """Return the targets of an output or of one element of it.
 
     Parameters
@@ -300,6 +302,8 @@ def targets_of(result: Result, name: str, every: bool = False) -> Iterator[Index
     name : str
     every : bool, optional
         Whether also those that must be asked for by name.
+    form : str, optional
+        Only those of this form, as in `split_name`; by default all.
 
     Returns
     -------
@@ -309,4 +313,4 @@ def targets_of(result: Result, name: str, every: bool = False) -> Iterator[Index
     if result.is_category(name.partition("[")[0]):
         return category_targets(result, name)
     elements = result.elements([name]) if name in result.dataset else result.named_elements(name)
-    return targets.targets(elements, result.analysis.thresholds, every)
+    return targets.targets(elements, result.analysis.thresholds, every, form)

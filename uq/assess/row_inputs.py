@@ -70,17 +70,21 @@ def normal_scores(values: Floats, law: Law, bounds: tuple[float, float]) -> Floa
     return np.asarray(special.ndtri(np.clip(share, 2.0**-54, 1 - 2.0**-53)))
 
 
-def inputs_of(rows: Result, study: StudyFile | None = None, text: str = "") -> Inputs:
+def inputs_of(
+    rows: Result, study: StudyFile | None = None, laws: dict[str, Law] | None = None
+) -> Inputs:
     """Return the uncertain inputs of rows.
 
     Parameters
     ----------
     rows : Result
     study : StudyFile, optional
-        Another study of the same inputs, with its `text`.
+        Another study of the same inputs.
+    laws : dict of str to Law, optional
+        Those of the other study.
     """
-    study, text = (rows.study, rows.dataset.attrs["study"]) if study is None else (study, text)
-    laws = laws_of(text)
+    study = rows.study if study is None else study
+    laws = laws_of(rows.dataset.attrs["study"]) if laws is None else laws
     tied = {name: law.equals for name, law in study.uncertain.items() if isinstance(law, Tied)}
     admissible = {
         name: tuple(map(float, rows.dataset.variables[name].attrs.get("admissible", EVERYWHERE)))

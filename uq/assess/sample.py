@@ -181,7 +181,7 @@ class Sample(ABC):
             return Moments(NOTHING, NOTHING, None, None)
         kept = element.present
         dependence = self.dependence[kept]
-        plain = moments(element.at_least, dependence, self.confidence)
+        plain = moments(element.at_least, dependence, self.confidence, element.ascending)
         if by is None:
             return plain
         mean, sd = (

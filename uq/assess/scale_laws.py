@@ -81,6 +81,27 @@ class IndependentScale:
                 below[block] = np.where(np.isnan(lives[block]), 0.0, share)
         return below
 
+    def above_each(self, lives: Floats, times: Floats) -> Iterator[Floats]:
+        """Yield P(T >= time) of each row, shape (n,), for each time; 0 where the life is NaN.
+
+        As 1 - `below`, but only of the rows at which it is not certain: these are neighbours in the
+        order of the logarithms of lives less what was drawn.
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            logarithms = np.log(lives)
+            order = np.argsort(self.drawn - logarithms)[: len(lives) - np.isnan(lives).sum()]
+            logarithms, drawn = logarithms[order], self.drawn[order]
+            ends, places = np.array(self.term.certain), drawn - logarithms
+            for moment in np.log(times):
+                first, last = np.searchsorted(places, ends - moment)
+                above = np.zeros(len(lives))
+                above[order[:first]] = 1.0
+                for start in range(first, last, _BLOCK):
+                    block = slice(start, min(start + _BLOCK, last))
+                    share = self.term.below(moment - logarithms[block] + drawn[block])
+                    above[order[block]] = 1 - share
+                yield above
+
     def log_life_shifts(self, z: Floats) -> Iterator[Floats]:
         """Yield the increase of logarithms of lives, shape (n,), at standard normal quantiles."""
         for at in self.term.at(z):

@@ -198,6 +198,7 @@ def targets(
     elements: Iterable[Element],
     thresholds: Mapping[str, tuple[float, ...]],
     every: bool = False,
+    only: str | None = None,
 ) -> Iterator[IndexTarget]:
     """Yield the targets of elements.
 
@@ -208,6 +209,8 @@ def targets(
         Output -> times t of its probabilities P(T < t), for lifetimes.
     every : bool, optional
         Whether also those that must be asked for by name.
+    only : str, optional
+        With `every`, only those of this form, as in `split_name`; by default all.
 
     Yields
     ------
@@ -217,12 +220,13 @@ def targets(
         rate 1/T and the events; for others the events y > t, of an angle's magnitude.
     """
     for element in elements:
-        if not (every and element.is_lifetime):
+        if not (every and (element.is_lifetime or only)):
             yield number_of(element)
         if every and not element.is_angle:
             for form in ("log", "rank", "rate")[: 3 if element.is_lifetime else 2]:
-                yield transformed(element, form)
-        if element.is_lifetime or every:
+                if only in (None, form):
+                    yield transformed(element, form)
+        if (element.is_lifetime or every) and only in (None, "P"):
             for threshold in thresholds.get(element.output, ()):
                 yield _event(element, threshold)
 

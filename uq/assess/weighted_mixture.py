@@ -1,8 +1,9 @@
 """Sample of rows with weights or laws of lives: the weighted mixture of the laws of the rows."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from itertools import repeat
 from math import ceil, exp, inf, isfinite, isnan, log, nan
 
 import numpy as np
@@ -19,7 +20,7 @@ from uq.assess.sample import (
     on_side,
     share,
 )
-from uq.assess.scale_laws import ConditionalScale, posterior_terms
+from uq.assess.scale_laws import ConditionalScale, IndependentScale, posterior_terms
 from uq.contract import Floats, Mask
 from uq.result.element import Element
 from uq.stats.dependent_rows import Dependence
@@ -95,12 +96,20 @@ class WeightedMixture(Sample):
         estimate = self._share(numbers, kept, self._dependence(kept, threshold, -1))
         return self._cautious(estimate, lambda plain: plain.above(threshold), kept)
 
-    def outliving(self, time: float) -> Estimate:
-        """Estimate P(T > time) among the rows that have a life; unknown once rows were censored."""
+    def outliving(self, time: float, above: Floats | None = None) -> Estimate:
+        """Estimate P(T > time) among the rows that have a life; unknown once rows were censored.
+
+        Parameters
+        ----------
+        time : float
+        above : ndarray, shape (n,), optional
+            The probability of each row, if already computed.
+        """
         if self.element.unknown_sides(time).any():
             return Estimate(reason=_CENSORED)
         kept = self.element.present
-        return self._share(self.element.above(time), kept, self._dependence(kept, time, -1))
+        above = self.element.above(time) if above is None else above
+        return self._share(above, kept, self._dependence(kept, time, -1))
 
     def quantile(self, probability: float) -> Estimate:
         """Estimate a quantile.
@@ -132,7 +141,12 @@ class WeightedMixture(Sample):
 
     def survival(self, time: Floats) -> Curve:
         """Estimate P(T > t) at times that ascend, with pointwise intervals."""
-        return Curve(*np.array([self.outliving(at).numbers for at in time]).reshape(-1, 3).T)
+        law = self.element.law
+        of_rows: Iterable[Floats | None] = repeat(None)
+        if isinstance(law, IndependentScale):
+            of_rows = law.above_each(self.element.values, time)
+        estimates = map(self.outliving, time, of_rows)
+        return Curve(*np.array([estimate.numbers for estimate in estimates]).reshape(-1, 3).T)
 
     @property
     def most_times(self) -> float:

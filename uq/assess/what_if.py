@@ -1,8 +1,10 @@
 """Statistics of a result under other laws of its inputs: the same rows, weighted."""
 
 from collections.abc import Collection, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import lru_cache
 from typing import Any
 
 import pandas as pd
@@ -22,9 +24,10 @@ from uq.sampling.listed_values import Empirical
 from uq.sampling.truncation import law_problem
 from uq.stats.estimate_json import number
 from uq.stats.importance_weights import ImportanceWeights, effective_rows, tail_shape
-from uq.study.changes import change, study_text
+from uq.study.changes import change
 from uq.study.file import AnalysisTable, StudyFile
-from uq.study.reading import law_in_units, read_study_text
+from uq.study.input_checks import laws_in
+from uq.study.reading import law_in_units, read_study_tables
 from uq.text.literals import read_toml, shown
 from uq.text.quantities import read_quantity
 
@@ -175,9 +178,14 @@ def _value(text: str) -> Any:
         return text
 
 
+@lru_cache(maxsize=2)  # the sliders of a page change it a hundred times
+def _parsed(text: str) -> dict[str, Any]:
+    return read_toml(text)
+
+
 def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
     """Return the inputs of the rows with the laws of the study as changed."""
-    data = read_toml(rows.dataset.attrs["study"])
+    data = deepcopy(_parsed(rows.dataset.attrs["study"]))
     # Another copula first: it removes the options of the former one.
     for place, value in sorted(changes.items(), key=lambda entry: entry[0] != _COPULA):
         _put(data, place, value)
@@ -188,9 +196,8 @@ def _changed(rows: Result, changes: Mapping[str, Any]) -> Inputs:
             raise InputError(
                 *(f"what if: {'.'.join(path)}: {why}" for path, why in misfits.items())
             )
-    text = study_text(data)
-    study = read_study_text(text, "what if")
-    inputs = inputs_of(rows, study, text)
+    study = read_study_tables(data, "what if")
+    inputs = inputs_of(rows, study, laws_in(data))
     faults = list(_faults(rows, study, inputs))
     if faults:
         raise InputError(*(f"what if: {fault.line}" for fault in faults))

@@ -25,10 +25,12 @@ Reading order; each part imports only those above it:
     app             the command ``uq``: its verbs, in the order of ``uq --help``
 """
 
+import ctypes
 import gc
 import os
 import signal
 import sys
+from contextlib import suppress
 from functools import partial
 from importlib.util import LazyLoader, find_spec, module_from_spec
 from types import FrameType
@@ -42,6 +44,9 @@ from uq.files.interrupts import undo_all
 _when_interrupted = "interrupted"
 
 _ALLOCATIONS = 100_000  # between searches for garbage; imports allocate much and discard little
+
+_KEPT = 2**25  # bytes that are freed and kept; glibc allows no more
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # as in its <malloc.h>
 
 _READERS = (
     "summary",
@@ -76,6 +81,7 @@ def main() -> NoReturn:
     if sys.argv[1:2] and sys.argv[1] in _READERS:
         for name in _NOT_ASKED:
             sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # "not installed"
+        _keep_freed_memory()
     for name, value in SINGLE_THREADED.items():
         os.environ.setdefault(name, value)
     if len(sys.argv) > 2 and sys.argv[1] in (*_READERS, "run") and "--help" not in sys.argv:
@@ -102,6 +108,13 @@ def main() -> NoReturn:
     code = streams.finish(code)
     gc.freeze()  # else Python searches all modules for garbage, three times, before it ends
     sys.exit(code)
+
+
+def _keep_freed_memory() -> None:
+    """Keep the memory of freed columns for the next ones: the system clears what it gives anew."""
+    with suppress(AttributeError, OSError, TypeError):  # another C library than glibc
+        for threshold in (_TRIM_THRESHOLD, _MMAP_THRESHOLD):
+            ctypes.CDLL(None).mallopt(threshold, _KEPT)
 
 
 def _load_when_used(*names: str) -> None:

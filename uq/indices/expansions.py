@@ -2,14 +2,15 @@
 
 import warnings
 from collections.abc import Callable, Mapping
-from functools import cache, lru_cache
+from functools import cache, partial
 from importlib.util import find_spec, module_from_spec
 from itertools import combinations
 from math import floor
 from typing import Any
 
 import numpy as np
-import scipy
+import scipy  # which imports scipy.linalg when it is first used
+from numpy.linalg import matrix_rank, pinv
 from scipy.special import ndtr
 
 from uq.contract import Floats
@@ -385,7 +386,7 @@ def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
 def _hdmr() -> Any:
     """Return a copy of SALib's module that keeps what follows from the inputs alone.
 
-    Its basis and the decompositions of its matrices are the same for every output. It does without
+    Its basis and the matrices of its regression are the same for every output. It does without
     its test of each term, which nothing reads here, and so without ``scipy.stats``, whose import
     takes as long as the expansion.
     """
@@ -401,39 +402,46 @@ def _hdmr() -> Any:
         if unused:
             del vars(scipy)["stats"]
     module._f_test = lambda *_: 0.0
-    for name in ("pinv", "matrix_rank", "svd"):
-        setattr(module, name, _kept(getattr(module, name)))
-    module._basis_matrix = _kept_basis(module._basis_matrix)
+    module._basis_matrix = _kept(module._basis_matrix)
+    module._cost_matrix = _kept(partial(_regression, module._cost_matrix))
+    module._d_morph = lambda basis, matrices, y, subset, _: (
+        matrices[1] @ (matrices[0] @ ((basis.T @ y) / subset))
+    )
     return module
+
+
+def _regression(cost_matrix: Callable[..., Floats], basis: Floats, settings: Any) -> Any:
+    """Return the matrices of SALib's ``_d_morph`` that follow from its basis.
+
+    The products of basis and output times the first, then times the second, are the coefficients.
+    """
+    products = basis.T @ basis
+    inverse, rank = pinv(products, hermitian=True), matrix_rank(products)
+    rest = np.eye(len(products)) - inverse @ products
+    left, _, right = scipy.linalg.svd(rest @ cost_matrix(basis, settings))
+    null = range(min(basis.shape) - rank)
+    left, right = (np.delete(matrix, null, axis=1) for matrix in (left, right.T))
+    return inverse, right @ pinv(left.T @ right) @ left.T
 
 
 _MOST_KEPT = 6  # degrees times the halves of the rows and all of them
 
 
 def _kept(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function of a matrix that keeps its last results; none is changed in place."""
+    """Return a function of numbers and SALib's settings that keeps its last results."""
+    results: dict[tuple[bytes, int], Any] = {}
 
-    @lru_cache(_MOST_KEPT)
-    def of_bytes(matrix: bytes, shape: tuple[int, ...], **options: Any) -> Any:
-        return function(np.frombuffer(matrix).reshape(shape), **options)
-
-    return lambda matrix, **options: of_bytes(matrix.tobytes(), matrix.shape, **options)
-
-
-def _kept_basis(function: Callable[..., Floats]) -> Callable[..., Floats]:
-    """Return SALib's function of inputs and settings, which keeps its last results."""
-    results: dict[tuple[bytes, int], Floats] = {}
-
-    def basis(x: Floats, settings: Any) -> Floats:
-        key = x.tobytes(), settings.p_o
+    def kept(numbers: Floats, settings: Any) -> Any:
+        key = numbers.tobytes(), settings.p_o
         if key not in results:
             if len(results) >= _MOST_KEPT:
                 results.clear()
-            results[key] = function(x, settings)
-            results[key].flags.writeable = False
+            results[key] = function(numbers, settings)
+            for array in results[key] if isinstance(results[key], tuple) else (results[key],):
+                array.flags.writeable = False
         return results[key]
 
-    return basis
+    return kept
 
 
 def _expansion(x: Floats, y: Floats, degree: int) -> Any:

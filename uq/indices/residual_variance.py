@@ -1,6 +1,7 @@
 """Residual variance given one input, by difference-based estimators along that input."""
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import cache, lru_cache, partial
 from itertools import islice
 from typing import NamedTuple
 
@@ -117,12 +118,12 @@ def residual_variance(x: Floats, y: Floats, dependence: Dependence = INDEPENDENT
     counts = np.diff(np.append(starts, len(order)))
     shared = counts >= _FEWEST_EQUAL
     alike = [order[i : i + k] for i, k in zip(starts[shared], counts[shared], strict=True)]
-    rest = order[np.repeat(~shared, counts)]
+    rest = order[np.repeat(~shared, counts)] if alike else order
     if len(rest) <= 2 * LEAST_LAGS:  # too few rows for lags: one group, independent of their values
         alike, rest = [*alike, rest], rest[:0]
     residuals = [(rows, _of_equal(y[rows], dependence[rows])) for rows in alike]
     if len(rest):
-        residuals.append((rest, _of_neighbours(y[rest], dependence[rest])))
+        residuals.append((rest, _of_neighbours(y.take(rest, axis=0), dependence[rest])))
     residuals = [(rows, left) for rows, left in residuals if np.isfinite(left.variance)]
     kept = sum(len(rows) for rows, _ in residuals)
     squares = np.zeros(len(y))
@@ -141,7 +142,7 @@ def _of_equal(y: Floats, dependence: Dependence) -> Residual:
     n = len(y)
     if n < 2:
         return Residual(np.nan, np.zeros(n), 0.0, 0.0)
-    squares = np.sum((y - y.mean(axis=0)) ** 2, axis=1) * (n / (n - 1))
+    squares = _summed((y - y.mean(axis=0)) ** 2) * (n / (n - 1))
     level = float(squares.mean())
     return Residual(variance(y, dependence), squares, 2 * level**2 / (n - 1), 4 * level**2 / n)
 
@@ -172,11 +173,12 @@ def _extrapolated(y: Floats, dependence: Dependence) -> tuple[int, tuple[int, ..
     bend : float
         Squared change of the estimate by fewer lags, beyond the noise.
     """
-    number = _number_of_lags(y, dependence)
+    half_square = cache(partial(_half_square, y, dependence))
+    number = _number_of_lags(y, dependence, half_square)
     lags = _lags(number, len(y), dependence)
     if len(lags) < _FEWEST_LAGS:
         return number, lags, np.nan, 0.0
-    halves = np.array([_half_square(y, dependence, lag) for lag in lags])
+    halves = np.array([half_square(lag) for lag in lags])
     lags, bend = _unbent(y, dependence, lags, halves)
     left = float(np.array(_weights(lags)) @ halves[: len(lags)])
     return min(number, len(lags)), lags, left, bend
@@ -214,11 +216,11 @@ def _weights(lags: tuple[int, ...]) -> tuple[float, ...]:
     return tuple(fitted[0].tolist())
 
 
-def _intercept(y: Floats, dependence: Dependence, lags: tuple[int, ...]) -> float:
+def _intercept(half_square: Callable[[int], float], lags: tuple[int, ...]) -> float:
     if len(lags) < _FEWEST_LAGS:
         return np.nan
     weights = zip(lags, _weights(lags), strict=True)
-    return float(sum(weight * _half_square(y, dependence, lag) for lag, weight in weights))
+    return float(sum(weight * half_square(lag) for lag, weight in weights))
 
 
 def _used(dependence: Dependence, lag: int) -> float:
@@ -243,7 +245,7 @@ def _unbent(
        Probab. Appl. 35, 454-466 (1991).
     """
     used = np.array([_used(dependence, lag) for lag in lags])
-    steps = np.sum((y[1:] - y[:-1]) ** 2, axis=1) / 2
+    steps = _summed((y[1:] - y[:-1]) ** 2) / 2
     product = float(np.mean(steps[2:] * steps[:-2]))  # product of neighbouring variances
     bend = 0.0
     while (half := len(lags) // 2) >= _FEWEST_LAGS:
@@ -269,17 +271,22 @@ def _half_square(y: Floats, dependence: Dependence, lag: int) -> float:
     counts[:lag] += 0.5
     counts[-lag:] += 0.5
     counts *= labels[lag:] != labels[:-lag]
-    return float(counts @ np.sum(steps**2, axis=1) / (2 * counts.sum()))
+    return float(counts @ _summed(steps**2) / (2 * counts.sum()))
 
 
-def _number_of_lags(y: Floats, dependence: Dependence) -> int:
+def _summed(squares: Floats) -> Floats:
+    """Return the sum over the elements of each row, without a pass over a single one."""
+    return squares[:, 0] if squares.shape[1] == 1 else np.asarray(np.sum(squares, axis=1))
+
+
+def _number_of_lags(y: Floats, dependence: Dependence, half_square: Callable[[int], float]) -> int:
     n = len(y)
     most = int(max(min(n // 8, 1.2 * n**0.55, _MOST_LAGS), LEAST_LAGS))
     every = variance(y, dependence)
     if not every > 0:
         return LEAST_LAGS
     pilot = min(12, most)
-    left = max(_intercept(y, dependence, _lags(pilot, n, dependence)) / every, 1e-6)
+    left = max(_intercept(half_square, _lags(pilot, n, dependence)) / every, 1e-6)
     if np.isnan(left):
         return LEAST_LAGS
     explained = max(1 - left, 3 * max(left, 1e-3) / np.sqrt(n * pilot))
@@ -298,10 +305,10 @@ def _squared_residuals(y: Floats, lags: int, left: float) -> tuple[Floats, Float
 
     def mean_square(sums: Floats, count: NDArray[np.intp]) -> Floats:
         means = sums / np.maximum(count, 1)[:, None]
-        return np.asarray(np.sum((y - means) ** 2, axis=1) * count / (count + 1))
+        return np.asarray(_summed((y - means) ** 2) * count / (count + 1))
 
-    until = np.vstack([np.zeros(y.shape[1]), np.cumsum(y, axis=0)])
-    before, after = until[row] - until[low], until[high] - until[row + 1]
+    until = np.vstack([np.zeros(y.shape[1]), np.cumsum(y.T, axis=1).T])
+    before, after = until[:-1] - until.take(low, axis=0), until.take(high, axis=0) - until[1:]
     both = mean_square(before + after, high - low - 1)
     sides = np.array([mean_square(before, row - low), mean_square(after, high - row - 1)])
     least = np.maximum(sides.min(axis=0), max(left, 0.0))
@@ -310,4 +317,4 @@ def _squared_residuals(y: Floats, lags: int, left: float) -> tuple[Floats, Float
     squares = np.where(jumps, np.minimum(both, 2 * np.sqrt(both * least)), both)
     total = np.append(0.0, np.cumsum(squares))
     count = high - low - 1
-    return squares, (total[high] - total[low] - squares) / count, count
+    return squares, (total.take(high) - total.take(low) - squares) / count, count

@@ -119,6 +119,8 @@ class Element:
 
     def unknown_sides(self, threshold: float) -> Mask:
         """Return the mask of rows censored below a threshold, whose side is unknown."""
+        if not self.censored.any():
+            return self.censored
         unknown = self.censored & (self.values < threshold)
         return unknown if self.high is None else unknown & (self.high >= threshold)
 

@@ -266,8 +266,9 @@ class Result:
         """Return the unit in which an input is read, in all sentences, tables and figures."""
         if name not in self._input_units:
             variable = self.dataset[name]
-            size = typical(variable.values.ravel())
-            self._input_units[name] = unit_of(str(variable.attrs["units"]), size)
+            units = str(variable.attrs["units"])
+            size = 0.0 if units == "1" else typical(variable.values.ravel())  # 1 has no prefix
+            self._input_units[name] = unit_of(units, size)
         return self._input_units[name]
 
     # Rows: outcome, dependence and weights

@@ -165,7 +165,7 @@ def _repeated_places(ds: xr.Dataset) -> str:
         return ""
     place = np.zeros(ds.sizes["row"], dtype=np.int64)
     for name in ("group", "replicate", "block", "unit", "repeat"):
-        if name in ds.variables:
+        if name in ds.variables and (ds[name].values != ds[name].values[:1]).any():
             _, code = np.unique(ds[name].values, return_inverse=True)
             place = np.unique(place * (int(code.max()) + 1) + code, return_inverse=True)[1]
     return "" if place.max() == len(place) - 1 else "several rows have one place in the design"

@@ -1,6 +1,7 @@
 """Distribution of a sum of independent terms, each a multiple of the logarithm of an input."""
 
 from functools import cached_property
+from math import inf
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -8,12 +9,14 @@ from scipy import special
 
 from uq.contract import Floats
 from uq.sampling.law import Law
+from uq.sampling.scipy_laws import Elementary
 from uq.sampling.truncation import cdf_within, ppf_within
 
 ACCURACY = 1e-10
 """Largest absolute error of the distribution function of a sum."""
 
 _FARTHEST = 8.2  # standard normal quantile beyond which a probability is negligible
+_CERTAIN = 8.5  # beyond which it rounds to 0 beside 1
 _NODES = 96
 _DEGREE = 24
 _DEEPEST = 12
@@ -60,6 +63,17 @@ class LogTerm:
         )
 
     @cached_property
+    def certain(self) -> tuple[float, float]:
+        """Value up to which 1 - P rounds to 1, and value from which P is 1; infinite if unknown."""
+        parent = self._law.frozen()
+        if not isinstance(parent, Elementary) or parent.uniform:
+            return -inf, inf
+        x = np.maximum(parent.value(np.array([-_CERTAIN, _CERTAIN])), 1e-300)
+        low, high = np.sort(self.exponent * np.log(x)).tolist()
+        below = self.below(np.array([low, high]))
+        return (low, high) if below[0] < 2.0**-55 and 1 - below[1] == 0 else (-inf, inf)
+
+    @cached_property
     def moments(self) -> tuple[float, float]:
         """Its mean and variance."""
         at, weight = normal_rule(special.ndtri(self.below(self.breaks)), _NODES)
@@ -100,6 +114,11 @@ class Sum:
         middle = (self.ends[1:] + self.ends[:-1]) / 2
         if np.abs(self._exactly(middle, 3 * _NODES) - self.below(middle)).max() > ACCURACY:
             raise ArithmeticError("the probability of the sum is not accurate enough")
+
+    @property
+    def certain(self) -> tuple[float, float]:
+        """Value up to which P is 0, and value from which it is 1."""
+        return float(self.ends[0]), float(self.ends[-1])
 
     @property
     def moments(self) -> tuple[float, float]:

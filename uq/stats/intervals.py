@@ -115,7 +115,8 @@ def weighted_count_interval(
 
 def is_constant(values: Floats) -> bool:
     """Whether finite values are equal but for rounding."""
-    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
+    low, high = values.min(), values.max()
+    return bool(high - low <= ROUNDING * max(abs(low), abs(high)))
 
 
 def sized(values: Floats) -> tuple[Floats, float]:
@@ -124,7 +125,9 @@ def sized(values: Floats) -> tuple[Floats, float]:
     Squares and fourth powers of the scaled values neither overflow nor underflow. Scaling by a
     power of two loses no digits.
     """
-    largest = np.abs(values).max(where=np.isfinite(values), initial=0.0)
+    largest = max(-values.min(initial=0.0), values.max(initial=0.0))
+    if not np.isfinite(largest):
+        largest = np.abs(values).max(where=np.isfinite(values), initial=0.0)
     size = 2.0 ** int(np.clip(np.frexp(largest)[1], -1000, 1000))
     return values / size, size
 

@@ -52,8 +52,6 @@ class BetaProducts:
     ----------
     ends : ndarray, shape (k,)
         Distinct times at which rows ended, ascending.
-    cumulative : ndarray, shape (k, 2)
-        Mean and variance of -log S up to and including each end.
     ending : tuple of float
         Parameters a, b of the beta law of the share that ever ends; b is 0 if this share is 1.
 
@@ -85,9 +83,14 @@ class BetaProducts:
         self._log_mean = np.append(0.0, np.cumsum(np.log(left / (at_risk + 1.0))))
         relative = together / (left * (at_risk + 2.0))
         self._log_relative = np.append(0.0, np.cumsum(np.log1p(relative)))
-        mean = special.digamma(at_risk + 1.0) - special.digamma(left)
-        variance = special.polygamma(1, left) - special.polygamma(1, at_risk + 1.0)
-        self.cumulative = np.cumsum(np.stack([mean, variance], axis=1), axis=0)
+        self._before, self._left = at_risk + 1.0, left
+
+    @property
+    def cumulative(self) -> Floats:
+        """Mean and variance of -log S up to and including each end, shape (k, 2)."""
+        mean = special.digamma(self._before) - special.digamma(self._left)
+        variance = special.polygamma(1, self._left) - special.polygamma(1, self._before)
+        return np.cumsum(np.stack([mean, variance], axis=1), axis=0)
 
     def ended_by(self, time: Floats) -> MatchedBeta:
         """Return the beta laws for lower confidence bounds of the share that has ended."""

@@ -116,15 +116,17 @@ def widened_to_binomial(
 EXACT = "exact: rows differ only in integrated inputs"
 
 
-def weighted_part_means(numbers: Floats, weights: Floats | None, dependence: Dependence) -> Floats:
+def weighted_part_means(
+    numbers: Floats, weights: Floats | None, dependence: Dependence, mean: float | None = None
+) -> Floats:
     """Return the linearised weighted mean of each independent part, shape (parts,).
 
-    Without weights all rows count alike. This is the mean of all rows plus the influence of the
-    part on it. If the law of an input was estimated from all rows, the influence on this law is
-    included (`uq.stats.dependent_rows.SharedInfluence`).
+    Without weights all rows count alike. This is the mean of all rows, which is computed unless it
+    is given, plus the influence of the part on it. If the law of an input was estimated from all
+    rows, the influence on this law is included (`uq.stats.dependent_rows.SharedInfluence`).
     """
-    mean = np.average(numbers, weights=weights)
-    influence = numbers - mean if weights is None else _influence(numbers, weights)
+    mean = np.average(numbers, weights=weights) if mean is None else mean
+    influence = numbers - mean if weights is None else _influence(numbers, weights, mean)
     labels, shared = dependence.labels, dependence.shared
     if labels is None:
         return mean + influence
@@ -135,9 +137,9 @@ def weighted_part_means(numbers: Floats, weights: Floats | None, dependence: Dep
     return np.asarray(mean + len(sums) * sums / len(influence))
 
 
-def _influence(numbers: Floats, weights: Floats) -> Floats:
+def _influence(numbers: Floats, weights: Floats, mean: float) -> Floats:
     """Return the influence of each row on a weighted mean, shape (n,)."""
-    return weights * (numbers - np.average(numbers, weights=weights)) / weights.mean()
+    return weights * (numbers - mean) / weights.mean()
 
 
 def weighted_share(
@@ -174,8 +176,9 @@ def weighted_share(
     """
     if not (len(numbers) if weights is None else weights.sum()) > 0:
         return Estimate()
-    mean = float(np.clip(np.average(numbers, weights=weights), 0.0, 1.0))
-    part_means = weighted_part_means(numbers, weights, dependence)
+    average = float(np.average(numbers, weights=weights))
+    mean = float(np.clip(average, 0.0, 1.0))
+    part_means = weighted_part_means(numbers, weights, dependence, average)
     parts = len(part_means)
     if parts < 2:
         return Estimate(mean, reason=ONE_ROW if dependence.is_none else "")
@@ -211,8 +214,9 @@ def share_to_compare(numbers: Floats, dependence: Dependence = INDEPENDENT) -> E
     """
     if not len(numbers):
         return Estimate()
-    mean = float(np.clip(numbers.mean(), 0.0, 1.0))
-    part_means = weighted_part_means(numbers, None, dependence)
+    average = float(numbers.mean())
+    mean = float(np.clip(average, 0.0, 1.0))
+    part_means = weighted_part_means(numbers, None, dependence, average)
     if len(part_means) < 2:
         return Estimate(mean)
     hits = binomial_sizes(numbers, None, dependence)
@@ -270,15 +274,15 @@ def moments_of_rows(
     squares = (values - mean) ** 2 + within / unit / unit
     variance = float(np.average(squares, weights=weights))
     of_rows = dependence.inputs is not None and not is_constant(weights)
-    influence = _influence(values, weights)
-    part_means = weighted_part_means(values, weights, dependence)
+    influence = _influence(values, weights, mean)
+    part_means = weighted_part_means(values, weights, dependence, mean)
     parts = mean + influence if of_rows else part_means
     ends = widened_for_outliers(mean, scatter_interval(mean, part_means), parts)
     ends = widened_for_jumps(mean, ends, influence, dependence.neighbours, CONFIDENCE)
     of_mean = Estimate(unit * mean, unit * ends[0], unit * ends[1])
     size = max(variance, 1e-300)
-    relative = weighted_part_means(squares, weights, dependence) / size
-    rows = _influence(squares, weights) / size
+    relative = weighted_part_means(squares, weights, dependence, variance) / size
+    rows = _influence(squares, weights, variance) / size
     parts = 1.0 + rows if of_rows else relative
     away = np.asarray(widened_for_outliers(1.0, scatter_interval(1.0, relative), parts)) - 1.0
     sd = unit * variance**0.5

@@ -74,7 +74,11 @@ def laws_of(text: str) -> dict[str, Law]:
 
 @lru_cache(maxsize=2)  # the one of a result is read by each of its numbers
 def _laws_of(text: str) -> dict[str, Law]:
-    data = parse(text, "study of this result")
+    return laws_in(parse(text, "study of this result"))
+
+
+def laws_in(data: dict[str, Any]) -> dict[str, Law]:
+    """Return the laws in a parsed study, with their listed values."""
     tables = sound_entries(data, shape_faults(data))
     entries, _ = read_entries(tables, columns_of_files(tables, None)[0])
     return {name: entry for name, entry in entries.items() if not isinstance(entry, Tied)}

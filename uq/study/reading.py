@@ -42,7 +42,11 @@ def read_study_text(text: str, source: str = "study") -> StudyFile:
     InputError
         One line per fault of syntax or schema.
     """
-    data = parse(text, source)
+    return read_study_tables(parse(text, source), source)
+
+
+def read_study_tables(data: dict[str, Any], source: str) -> StudyFile:
+    """Return the study file from its parsed text; raise `InputError` with one line per fault."""
     if faults := shape_faults(data):
         raise InputError(*(f"{source}: {fault.line}" for fault in faults))
     return StudyFile.model_validate(data)

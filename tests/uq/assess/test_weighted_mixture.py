@@ -11,6 +11,7 @@ from scipy import special
 from uq.assess.comparison import compare
 from uq.assess.integrated_inputs import elements_with_laws, integrated
 from uq.assess.row_inputs import inputs_of
+from uq.assess.scale_laws import IndependentScale
 from uq.assess.summary_table import summary
 from uq.assess.survival import survival
 from uq.assess.weighted_mixture import WeightedMixture
@@ -50,6 +51,31 @@ def test_a_sum_of_uniform_logarithms_is_a_trapezium():
 
     truth = (ramp(y) - ramp(y - wide) - ramp(y - narrow) + ramp(y - wide - narrow)) / wide / narrow
     assert np.abs(law_of_sum(terms).below(y) - truth).max() < 1e-10
+
+
+SCALES = {
+    "lognormal": [(lognormal(0.5), 1.0)],
+    "lognormal, divided": [(lognormal(0.5), -2.0)],
+    "normal": [({"distribution": "normal", "mean": 2.5, "sd": 0.25}, 1.0)],
+    "truncated below": [(lognormal(0.5, truncate=[0.9, 5.0]), 1.0)],
+    "truncated above": [(lognormal(0.5, truncate=[1e-3, 1.1]), -1.0)],
+    "uniform": [({"distribution": "uniform", "lower": 0.5, "upper": 2.0}, 1.0)],
+    "weibull": [({"distribution": "weibull", "shape": 3.0, "scale": 2.0}, 1.0)],
+    "product": [(lognormal(0.5), 1.0), (lognormal(0.3), -1.0)],
+}
+
+
+@pytest.mark.parametrize("name", SCALES)
+def test_at_each_time_a_row_outlives_it_as_if_asked_alone(name):
+    terms = [LogTerm(law_of(law), (0.0, np.inf), exponent) for law, exponent in SCALES[name]]
+    random = np.random.default_rng(0)
+    lives = 10.0 ** random.uniform(0, 12, 40_000)
+    lives[:3] = np.nan, np.inf, 0.0
+    law = IndependentScale(("a",), law_of_sum(terms), random.normal(size=len(lives)))
+    times = np.array([1e-5, 10.0, 1e6, 1e8, 1e20])
+    for time, above in zip(times, law.above_each(lives, times), strict=True):
+        alone = np.where(np.isnan(lives), 0.0, 1 - law.below(lives, time))
+        assert np.array_equal(above, alone)
 
 
 def by_copula(name, **options):

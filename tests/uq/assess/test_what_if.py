@@ -74,6 +74,16 @@ def test_the_same_laws_change_nothing(result):
         )
 
 
+def test_a_change_is_of_the_study_and_not_of_the_change_before(result):
+    def change(**arguments):
+        asked = {f"uncertain.z.{name}": value for name, value in arguments.items()}
+        return what_if_facts(reweighted_summary(Result(result), asked)).json["outputs"]
+
+    same = change(sd=1.0)
+    change(mean=0.3)
+    assert change(sd=1.0) == same
+
+
 CHANGES = {
     "narrower": ({"uncertain.z.sd": 0.7}, {"a": lognormal(0.5), "z": NORMAL | {"sd": 0.7}}),
     "shifted": ({"uncertain.z.mean": 0.3}, {"a": lognormal(0.5), "z": NORMAL | {"mean": 0.3}}),

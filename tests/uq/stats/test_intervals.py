@@ -4,7 +4,7 @@ from scipy import stats
 
 from uq.stats import intervals
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
-from uq.stats.intervals import mean_interval, share_interval
+from uq.stats.intervals import mean_interval, share_interval, sized
 from uq.stats.moments import corrected_mean_interval, hall_interval
 from uq.stats.order_statistics import quantile, quantile_interval, rows_for_bound, tolerance_bounds
 
@@ -12,6 +12,16 @@ RNG = np.random.default_rng(3)
 VALUES = RNG.lognormal(size=200)
 REPLICATE = np.arange(200) % 8
 REPLICATES = Dependence(REPLICATE)
+
+
+@pytest.mark.parametrize(
+    ("values", "size"),
+    [([3.0, -1.0], 4.0), ([-3.0, 1.0], 4.0), ([np.nan, np.inf, -np.inf, 3.0], 4.0), ([], 1.0)],
+)
+def test_the_largest_finite_magnitude_is_the_size(values, size):
+    scaled, power = sized(np.array(values))
+    assert power == size
+    assert np.array_equal(scaled * power, values, equal_nan=True)
 
 
 def test_mean_of_independent_rows_is_students_interval_beyond_two_more_outliers():

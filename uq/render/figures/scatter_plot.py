@@ -175,7 +175,8 @@ def _conditional(
     count = min(_MOST_BINS, len(x) // _IN_BIN)
     if count < 2:
         return
-    slices = np.array_split(np.argsort(x, kind="stable"), count)
+    order = order_statistics.ascending_order(x)
+    slices = np.array_split(order, count)
     middle = np.array([x[rows].mean() for rows in slices])
     if medians:
         line = np.array([order_statistics.quantile(values[rows], 0.5) for rows in slices])
@@ -196,7 +197,7 @@ def _conditional(
     line = np.where(seen & ~_fragments(seen), line, np.nan)
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
     # A gap between neighbouring rows breaks the line, because it contains no information.
-    inside = np.sort(x)
+    inside = x[order]
     edges = np.array(axes.get_xlim())
     along, width = (np.log, np.log(edges)) if axes.get_xscale() == "log" else (np.array, edges)
     jumps = np.flatnonzero(np.diff(along(inside)) > _GAP * np.ptp(width))
@@ -250,7 +251,7 @@ def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
     count = max(1, min(_MOST_BINS, len(ranks) // _IN_BIN))
 
     def between(x: Floats) -> float:
-        slices = np.array_split(ranks[np.argsort(x[present], kind="stable")], count)
+        slices = np.array_split(ranks[order_statistics.ascending_order(x[present])], count)
         means = np.array([part.mean() if len(part) else 0.0 for part in slices])
         return -float(np.average((means - ranks.mean()) ** 2)) if len(ranks) else 0.0
 

@@ -3,6 +3,7 @@
 import base64
 import re
 from collections.abc import Container, Iterator, Sequence
+from functools import lru_cache
 from io import BytesIO, StringIO
 from typing import Any, NamedTuple
 from xml.etree import ElementTree
@@ -64,6 +65,7 @@ def shortened(path: str) -> str:
     return "".join(parts)
 
 
+@lru_cache(2**12)  # most steps of a curve are short
 def _text(steps: int) -> str:
     """Return a number of steps in px: ``.17``, ``-.17``, ``12``."""
     return re.sub(r"^(-?)0(?=\.)", r"\1", f"{steps * STEP:.2f}".rstrip("0").rstrip(".")) or "0"
