@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Sequence
-from math import inf, prod
+from math import inf, nan, prod
 from pathlib import Path
 from typing import Any
 
@@ -331,6 +331,7 @@ def _parameters(ds: xr.Dataset, varying: set[str]) -> dict[str, dict[str, Any]]:
             "source": attrs["source"],
             "bounds": [float(bound) for bound in bounds],
             "value": None if name in varying else float(values[0]),
+            "nominal": float(attrs.get("nominal", nan)),
         }
     return parameters
 

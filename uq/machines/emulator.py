@@ -104,8 +104,8 @@ class Emulator:
         What produced its rows: model, title, model_version, study_identity, rows_sha256, and the
         versions of libraries.
     parameters : dict of str to dict
-        All parameters of the model, with unit, meaning, symbol, bounds and value; those whose value
-        varies have none.
+        All parameters of the model, with unit, meaning, symbol, bounds, nominal value (NaN in rows
+        of older versions) and value; those whose value varies have none.
     equal : dict of str to str
         Parameters that equal another one in all rows.
     settings : dict
@@ -408,9 +408,7 @@ def _fields_of(emulator: Emulator) -> Fields:
     for name, declared in emulator.parameters.items():
         words = declared["symbol"], declared["unit"], declared["meaning"]
         parameter = Parameter(*words, tuple(declared["bounds"]), declared["source"])
-        # Of a model that is not installed, nominal values of what varies in its rows are unknown.
-        value = declared["value"]
-        fields[name] = parameter, float("nan") if value is None else value
+        fields[name] = parameter, declared["nominal"]
     return fields
 
 

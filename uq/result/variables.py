@@ -35,11 +35,10 @@ def parameter_variable(
         "long_name": declared.meaning,
         "symbol": declared.symbol,
         "source": source or declared.source,
+        "nominal": float(model.nominal[name]),  # to which the source of a fixed value applies
     }
     if uncertain:
         attrs["admissible"] = np.array(declared.bounds)
-    else:
-        attrs["nominal"] = float(model.nominal[name])  # the value to which the source applies
     attrs |= {"initial": 1} if declared.initial else {}
     attrs |= {"level": level} if level else {}
     return (("row",), value, attrs) if uncertain else ((), np.float64(value), attrs)

@@ -12,8 +12,10 @@ import uq as api
 from uq.contract import Status
 from uq.errors import InputError
 from uq.explore.rare_events import rare_event
-from uq.machines.emulator import EmulatedRows, emulator_at, model_of_emulator, parts_of
+from uq.files.whole_files import write_result
+from uq.machines.emulator import EmulatedRows, emulator_at, inputs_of, model_of_emulator, parts_of
 from uq.machines.serving import address_of, server_of
+from uq.stats.regressions import PROCESS, Predictor, regress, scale_of
 from uq.study.installed_models import find_model, model_at
 
 PAIRED, SIGNS = "sample_models:PAIRED", {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
@@ -333,10 +335,65 @@ def test_a_polynomial_is_learnt_exactly_and_lives_that_never_end_are_shown(pads)
     assert emulator.elements["y"][0].regression.q2 > 1 - 1e-9
 
 
-def test_constants_of_a_twin_are_those_of_the_result_and_others_must_be_stated(pads, uq):
+def test_nominal_values_of_an_emulator_are_those_of_the_function(pads, uq):
     line = api.two_fidelities("two.nc", emulator="pad.emulator").loc[("y", "mean")]
     assert line["value"] == pytest.approx(1.75, abs=0.02)  # n = 1, not the middle of 1 to 3
-    ended = uq("run", "two.toml", "--model", "pad.emulator", "-o", "more.nc")
+    ended = uq("run", "two.toml", "--model", "pad.emulator", "-o", "more.nc", "--quiet")
+    assert ended.code == 0, ended.err
+    assert float(api.open_result("more.nc")["y"].mean()) == pytest.approx(1.75, abs=0.1)
+    ended = uq("simulate", "pad.emulator", "--json")
+    assert ended.code == 0 and json.loads(ended.out)["outputs"]["y"] == pytest.approx(1.75, abs=0.1)
+
+
+def test_nominal_values_that_an_older_result_lacks_must_be_stated(pads, uq):
+    ds = api.open_result("three.nc")
+    for variable in ds.variables.values():
+        variable.attrs.pop("nominal", None)
+    write_result(ds, Path("older.nc"))
+    assert uq("emulate", "older.nc", "-o", "older.emulator").code == 0
+    ended = uq("run", "two.toml", "--model", "older.emulator", "-o", "more.nc")
     assert ended.code == 2 and "n: give its law, or its value in [fixed]" in ended.err
+
+
+FAR = """
+import uq
+@uq.machine(returns={"y": "1"})
+def far(a=0.5, b=0.0):
+    return {"y": 1000 + a + b * b}
+"""
+NORMAL = '[uncertain.{}]\ndistribution = "normal"\nmean = {}\nsd = {}\n'
+
+
+def test_a_row_is_predicted_in_a_twin_wherever_it_is(tmp_path):
+    """The mean of 1000 + a + b^2: samples of 100 rows, of which none is outside its own range."""
+    (tmp_path / "far_away.py").write_text(FAR)
+    laws = "\n" + NORMAL.format("a", 0.5, 0.2) + NORMAL.format("b", 0.0, 0.5)
+    (tmp_path / "far.toml").write_text(pad_study().replace("pad", "far") + laws)
+    study = api.load_study(tmp_path / "far.toml", model=str(tmp_path / "far_away.py"))
+    held = []
+    for seed in range(900, 920):
+        ds = api.run(study.with_changes({"design.seed": seed}), tmp_path / f"{seed}.nc", workers=0)
+        api.emulate(ds, tmp_path / "far.emulator")
+        lines = api.two_fidelities(ds, emulator=tmp_path / "far.emulator").loc["y"]
+        line = lines.loc["mean"]
+        held.append(line["low"] <= 1000.75 <= line["high"])
+        assert line["high"] - line["low"] < 0.3 * (line["plain_high"] - line["plain_low"])
+    assert sum(held) >= 17
+
+
+def test_an_error_is_not_magnified_where_rows_are_close(tmp_path):
+    """A process predicts an error of 1e-9 of a row beside another, and it is as large as others."""
+    z = np.random.default_rng(3).standard_normal((60, 1))
+    inputs = inputs_of([scale_of("x", z[:, 0])], z)
+    regression = regress(inputs, np.abs(z[:, 0]), np.arange(60), (PROCESS,))
+    deviations, errors = regression.deviations[1:], regression.errors[1:]
+    regression = regression._replace(deviations=[1e-9, *deviations], errors=[0.01, *errors])
+    predictor = Predictor(regression, inputs)
+    _, sd = predictor(inputs.z)
+    largest = np.abs(np.outer(sd, predictor.standard_errors)).max()
+    assert largest < 20 * np.abs(regression.errors).max()
+
+
+def test_proposed_laws_are_those_of_the_rows_learnt(pads, uq):
     proposed = uq("init", "pad.emulator")
     assert "nan" not in proposed.out and "the range of the rows learnt" in proposed.out

@@ -61,6 +61,7 @@ def test_a_result_opens_with_plain_xarray_and_describes_itself(kinds):
             "long_name": "second input",
             "symbol": "x_2",
             "source": "a guess",
+            "nominal": 0.5,
             "admissible": [0.0, 1.0],
         }
         assert ds["x1"].dims == ()

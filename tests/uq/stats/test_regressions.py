@@ -9,9 +9,11 @@ from uq.stats.regressions import (
     PROCESS,
     Predictor,
     ScaledInputs,
+    fit_chaos,
     process_of,
     regress,
     scale_of,
+    scaled,
 )
 
 RNG = np.random.default_rng(1)
@@ -75,3 +77,15 @@ def test_a_scale_is_logarithmic_or_uniform_by_the_shape_of_the_column():
             assert ends == pytest.approx((-1, 1))
         else:
             assert scale(column).std() == pytest.approx(1.0)
+
+
+def test_inputs_of_few_values_whose_polynomials_are_alike_have_a_fit():
+    """Of three values; OpenTURNS finds a singular matrix in this sample."""
+    rng = np.random.default_rng(11)
+    x = np.column_stack(
+        [rng.standard_normal(80), rng.choice([1.0, 2.0, 4.0], 80, p=[0.5, 0.3, 0.2])]
+    )
+    scales = [scale_of(name, column) for name, column in zip("xk", x.T, strict=True)]
+    y = x[:, 0] * x[:, 1] + 0.3 * x[:, 1] ** 2
+    fit = fit_chaos(scaled(scales, x), (y - y.mean()) / y.std(), (False, True))
+    assert len(fit["terms"]) == len(fit["coefficients"]) >= 1
