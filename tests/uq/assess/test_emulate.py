@@ -389,7 +389,7 @@ def test_an_error_is_not_magnified_where_rows_are_close(tmp_path):
     deviations, errors = regression.deviations[1:], regression.errors[1:]
     regression = regression._replace(deviations=[1e-9, *deviations], errors=[0.01, *errors])
     predictor = Predictor(regression, inputs)
-    _, sd = predictor(inputs.z)
+    _, sd = predictor(np.linspace(-2.0, 2.0, 50)[:, None])
     largest = np.abs(np.outer(sd, predictor.standard_errors)).max()
     assert largest < 20 * np.abs(regression.errors).max()
 
