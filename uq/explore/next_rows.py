@@ -166,7 +166,7 @@ def _study_of(result: Result, model: str | None) -> Study:
     ------
     InputError
     """
-    if not (result.has_rounds and result.has_independent_samples):
+    if not result.has_next_rows:
         result.refuse_if_weighted("next rows")
     if not result.has_independent_samples or result.is_nested or result.design.imported:
         raise InputError(

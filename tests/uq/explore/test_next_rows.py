@@ -159,12 +159,54 @@ def test_no_row_is_proposed_twice():
     assert len(np.unique(scores, axis=0)) == 500
 
 
+WEAR = {
+    "study": {"name": "wear", "model": "exponential-wear"},
+    "fixed": {"depth": 2.5e-4},
+    "uncertain": {"rate": {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}},
+}
+MEAN_LIFE = 1e6 * np.exp(0.5**2 / 2)
+
+
+def worn_in_rounds(tmp_path, seed):
+    """Return a result of 80 rows and three rounds of 20 next ones."""
+    result = Result(computed(study_of(WEAR | design(80, seed))))
+    for number in range(3):
+        path = tmp_path / f"{seed}-{number}.nc"
+        result = Result(extend_by_next(result, 20, Aim("life"), path, None, RunOptions(workers=0)))
+    return path
+
+
+def test_the_mean_is_given_and_words_are_of_next_rows(uq, tmp_path):
+    path = worn_in_rounds(tmp_path, seed=0)
+    line = api.summary(path).loc["life"]
+    assert line["mean_low"] < MEAN_LIFE < line["mean_high"] < 1.3 * line["mean_low"]
+    card, full, page = (uq("summary", path, *more).out for more in ((), ("--full",), ("--json",)))
+    assert "no 95/95 life: the rows have weights ('uq extend --next')" in card
+    assert not any(word in text for text in (card, full, page) for word in ("inspect", "other law"))
+
+
+def test_an_update_does_not_replace_rows_that_no_inspection_has_weighted(uq, tmp_path):
+    path = worn_in_rounds(tmp_path, seed=1)
+    (tmp_path / "seen.csv").write_text("unit,output,kind,time\nA,life,survived,1e5\n")
+    (tmp_path / "wear.toml").write_text(as_text(WEAR | design(80)))
+    uq("run", tmp_path / "wear.toml", "-o", "a.nc", "--quiet")
+    ended = uq("update", "a.nc", tmp_path / "seen.csv", "-o", path)
+    assert "has rows that no inspections have weighted; choose another output" in ended.err
+    assert ended.code == 2 and ended.err.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_the_interval_of_the_mean_covers_after_three_rounds(tmp_path):
+    """Of 60 results all have a mean; some have a heavy tail, which has no interval."""
+    lines = [api.summary(worn_in_rounds(tmp_path, seed)).loc["life"] for seed in range(60)]
+    ends = [(line["mean_low"], line["mean_high"]) for line in lines if line["mean_high"] > 0]
+    held = [low < MEAN_LIFE < high for low, high in ends]
+    assert np.isfinite([line["mean"] for line in lines]).all() and len(held) > 50
+    assert np.mean(held) > 0.91
+
+
 def test_a_limit_that_no_life_has_is_one_line():
-    wear = {
-        "study": {"name": "wear", "model": "exponential-wear"},
-        "uncertain": {"rate": {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}},
-    }
-    ds = computed(study_of(wear | design(40)))
+    ds = computed(study_of(WEAR | design(40)))
     with pytest.raises(InputError, match="next rows: -1 is no life"):
         api.next_rows(ds, 20, "life", near=-1.0)
 
