@@ -187,6 +187,8 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
     """
     if not FOLDS <= rows <= POOL // 8:
         raise InputError(f"next rows: {rows} must be between {FOLDS} and {POOL // 8}")
+    if aim.near is not None and not np.isfinite(aim.near):
+        raise InputError(f"next rows: near {aim.near}: must be finite")
     if aim.output:
         find_element(study, aim.output)
     names, is_first = list(study.uncertain), not _rounds(result)

@@ -130,6 +130,8 @@ def test_extend_adds_them_in_rounds_with_weights(uq, tmp_path):
         (("--next", 20), "--next N needs -o NEW.nc"),
         (("--next", 2, "-o", "b.nc"), "--next"),
         (("--next", 20, "-o", "b.nc", "--output", "z"), "'z': no such output of model 'ishigami'"),
+        (("--next", 20, "-o", "b.nc", "--output", "y", "--near", "nan"), "near nan: must be"),
+        (("--next", 20, "-o", "b.nc", "--output", "y", "--near", "-inf"), "near -inf: must be"),
         ((), "add --samples N, or --next N -o NEW.nc"),
     ],
 )
@@ -138,6 +140,7 @@ def test_mistakes_are_one_line(uq, tmp_path, arguments, words):
     uq("run", tmp_path / "waves.toml", "-o", "a.nc", "--quiet")
     ended = uq("extend", "a.nc", *arguments)
     assert ended.code == 2 and words in ended.err and ended.err.count("\n") == 1
+    assert not list(tmp_path.glob("b*"))
 
 
 def test_dependent_rows_are_refused():
@@ -203,6 +206,16 @@ def test_the_interval_of_the_mean_covers_after_three_rounds(tmp_path):
     held = [low < MEAN_LIFE < high for low, high in ends]
     assert np.isfinite([line["mean"] for line in lines]).all() and len(held) > 50
     assert np.mean(held) > 0.91
+
+
+def test_a_limit_that_is_no_number_is_one_line(uq, tmp_path):
+    (tmp_path / "waves.toml").write_text(as_text(TABLES | design(40)))
+    uq("run", tmp_path / "waves.toml", "-o", "a.nc", "--quiet")
+    for near in ("nan", "inf"):
+        ended = uq("next-rows", "a.nc", "--output", "y", "--near", near)
+        assert ended.code == 2 and f"next rows: near {near}: must be finite" in ended.err
+        with pytest.raises(InputError, match=f"near {near}: must be finite"):
+            api.next_rows("a.nc", 20, "y", near=float(near))
 
 
 def test_a_limit_that_no_life_has_is_one_line():
