@@ -27,7 +27,8 @@ from uq.sampling.unit_cube import hashed, uniform
 from uq.stats.regressions import FOLDS, Predictor, Regression, Scale, ScaledInputs, scaled
 from uq.text.numbers import number
 
-FORMAT = 1
+FORMAT = 2
+_FORMAT, _CHECKSUM = "vibrolife_emulator", "sha256"  # the first members of a file
 VALUE, NEVER, CENSORED, UNDEFINED = "value", "never", "censored", "undefined"
 """States of an element of an output in a row."""
 
@@ -292,13 +293,15 @@ def emulator_at(path: Path) -> Emulator:
     Raises
     ------
     InputError
-        When it is not one.
+        When it is not one, or not as `text_of` wrote it.
     """
     file_there(path)
     try:
         plain = json.loads(path.read_text())
-        if plain.pop("vibrolife_emulator") != FORMAT:
+        if plain.pop(_FORMAT) != FORMAT:
             raise InputError(f"{path}: an emulator of another version of vibrolife; make it again")
+        if plain.pop(_CHECKSUM) != _checksum(plain):
+            raise InputError(f"{path}: was changed since 'uq emulate' wrote it; make it again")
         plain["scales"] = [Scale(*scale) for scale in plain["scales"]]
         plain["elements"] = {
             name: [_fit_of(fit) for fit in fits] for name, fits in plain["elements"].items()
@@ -313,9 +316,13 @@ def emulator_at(path: Path) -> Emulator:
 
 
 def text_of(emulator: Emulator) -> str:
-    """Return the text of the file of an emulator."""
+    """Return the text of the file of an emulator, with a checksum of its content."""
     declared = {field.name: getattr(emulator, field.name) for field in fields(emulator)}
-    return json.dumps({"vibrolife_emulator": FORMAT} | declared) + "\n"
+    return json.dumps({_FORMAT: FORMAT, _CHECKSUM: _checksum(declared)} | declared) + "\n"
+
+
+def _checksum(declared: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(declared).encode()).hexdigest()
 
 
 def _fit_of(plain: list[Any]) -> ElementFit:

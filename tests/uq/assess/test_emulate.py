@@ -288,11 +288,31 @@ def test_mistakes_are_one_line(uq, write_study, arguments, words):
 
 
 def test_a_file_that_is_none_is_one_line(tmp_path):
-    for text in ("", "{}", '{"vibrolife_emulator": 1}', "[1]"):
+    for text in ("", "{}", '{"vibrolife_emulator": 2}', "[1]"):
         path = tmp_path / "bad.emulator"
         path.write_text(text)
         with pytest.raises(InputError, match="bad.emulator: is not an emulator"):
             model_at(str(path))
+
+
+def test_a_file_that_was_changed_or_is_of_another_version_is_one_line(waves, tmp_path):
+    path, text = tmp_path / "waves.emulator", waves.read_text()
+    learnt = json.loads(text)
+    digits = repr(learnt["x"][3][0])
+    assert text.count(digits) == 1
+    changed = f"{path}: was changed since 'uq emulate' wrote it; make it again"
+    for old, new, words in (
+        (digits, digits[:-1] + str((int(digits[-1]) + 1) % 10), changed),
+        ('"failed": 0', '"failed": 0.0', changed),
+        ('"failed": 0', '"failed": 0, "more": 0', changed),
+        ('{"vibrolife_emulator": 2', '{"vibrolife_emulator": 1', "of another version"),
+    ):
+        path.write_text(text.replace(old, new))
+        with pytest.raises(InputError, match=words) as refused:
+            model_at(str(path))
+        assert "\n" not in str(refused.value)
+    path.write_text(json.dumps(json.loads(text), indent=1))  # the same content
+    assert emulator_at(path) == emulator_at(waves)
 
 
 PAD = """
