@@ -265,8 +265,15 @@ def _gain(result: Result, z: Floats, learnt: NDArray[np.intp], at: Floats, aim: 
     values = element.for_thresholds
     usable = np.isfinite(values[learnt]) & ~element.failed[learnt]
     kept = learnt[usable][-_MOST_LEARNT:]
-    if len(kept) < 2 * z.shape[1] + 10 or not np.ptp(values[kept]) > 0:
-        raise InputError(f"next rows: too few rows have different values of '{aim.output}'")
+    needed = 2 * z.shape[1] + 10
+    if len(kept) < needed:
+        part = "four fifths of " if len(learnt) < len(result) else ""
+        raise InputError(
+            f"next rows: too few rows: '{aim.output}' has a value in {len(kept)} of those to learn"
+            f" from, {part}{len(result)}, and {needed} are needed"
+        )
+    if not np.ptp(values[kept]) > 0:
+        raise InputError(f"next rows: '{aim.output}' has the same value in all rows to learn from")
     logarithmic = element.is_lifetime and values[kept].min() > 0
     if logarithmic and aim.near is not None and not aim.near > 0:
         raise InputError(f"next rows: {aim.near:g} is no life")

@@ -311,7 +311,7 @@ def emulator_at(path: Path) -> Emulator:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except (ValueError, TypeError, KeyError, AttributeError):
         raise InputError(
-            f"{path}: is not an emulator; 'uq emulate RESULT -o {path.name}' makes one"
+            f"{path}: is not an emulator; 'uq emulate RESULT -o NEW.emulator' makes one"
         ) from None
 
 
@@ -319,6 +319,15 @@ def text_of(emulator: Emulator) -> str:
     """Return the text of the file of an emulator, with a checksum of its content."""
     declared = {field.name: getattr(emulator, field.name) for field in fields(emulator)}
     return json.dumps({_FORMAT: FORMAT, _CHECKSUM: _checksum(declared)} | declared) + "\n"
+
+
+def is_written_by_emulate(path: Path) -> bool:
+    """Whether a file begins as `text_of` writes it, also by another version."""
+    try:
+        with path.open("rb") as file:
+            return file.read(100).startswith(f'{{"{_FORMAT}": '.encode())
+    except OSError:
+        return False
 
 
 def _checksum(declared: Mapping[str, Any]) -> str:

@@ -218,6 +218,17 @@ def test_a_limit_that_is_no_number_is_one_line(uq, tmp_path):
             api.next_rows("a.nc", 20, "y", near=float(near))
 
 
+def test_the_number_of_rows_that_an_output_needs_is_stated():
+    ds = waves(18)
+    words = r"'y' has a value in 1\d of those to learn from, four fifths of 18, and 16 are needed"
+    with pytest.raises(InputError, match=words):
+        api.next_rows(ds, 20, "y")
+    ds = waves(40)
+    ds["y"][:] = 1.0
+    with pytest.raises(InputError, match="next rows: 'y' has the same value in all rows to"):
+        api.next_rows(ds, 20, "y")
+
+
 def test_a_limit_that_no_life_has_is_one_line():
     ds = computed(study_of(WEAR | design(40)))
     with pytest.raises(InputError, match="next rows: -1 is no life"):
