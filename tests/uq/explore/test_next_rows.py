@@ -183,9 +183,13 @@ def test_the_mean_is_given_and_words_are_of_next_rows(uq, tmp_path):
     path = worn_in_rounds(tmp_path, seed=0)
     line = api.summary(path).loc["life"]
     assert line["mean_low"] < MEAN_LIFE < line["mean_high"] < 1.3 * line["mean_low"]
-    card, full, page = (uq("summary", path, *more).out for more in ((), ("--full",), ("--json",)))
+    card, full, numbers = (uq("summary", path, *by).out for by in ((), ("--full",), ("--json",)))
     assert "no 95/95 life: the rows have weights ('uq extend --next')" in card
-    assert not any(word in text for text in (card, full, page) for word in ("inspect", "other law"))
+    uq("report", path, "-o", "page.html")
+    page = (tmp_path / "page.html").read_text()
+    assert "The rows have weights, and a page needs rows of equal weight." in page
+    for text in (card, full, numbers, page):
+        assert not any(words in text for words in ("nspections", "other laws"))
 
 
 def test_an_update_does_not_replace_rows_that_no_inspection_has_weighted(uq, tmp_path):
