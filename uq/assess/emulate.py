@@ -24,6 +24,7 @@ from uq.machines.emulator import (
     ElementFit,
     Emulator,
     inputs_of,
+    is_written_by_emulate,
     most_likely,
     text_of,
 )
@@ -92,7 +93,7 @@ def emulate(
     ------
     InputError
         When the rows are weighted or nested, no input varies, an output does not exist, OpenTURNS
-        is missing, or all outputs are refused.
+        is missing, all outputs are refused, or the file is there and not an emulator.
 
     Examples
     --------
@@ -102,6 +103,8 @@ def emulate(
     True
     """
     result = Result.of(result)
+    if path is not None:
+        _check_file(Path(path))
     result.refuse_if_record("an emulator")
     result.refuse_if_weighted("an emulator")
     if result.is_nested or result.why_no_statistics:
@@ -154,11 +157,17 @@ def emulate(
     if not elements:
         raise InputError(*(f"{name}: no emulator: {why}" for name, why in refused.items()))
     if path is not None:
-        if Path(path).suffix != SUFFIX:
-            raise InputError(f"{path}: the file of an emulator ends in {SUFFIX}")
         with whole(Path(path)) as part:
             part.write_text(text_of(emulator))
     return emulator
+
+
+def _check_file(path: Path) -> None:
+    """Refuse a name that no emulator has, and a file that is something else."""
+    if path.suffix != SUFFIX:
+        raise InputError(f"{path}: the file of an emulator ends in {SUFFIX}")
+    if path.is_file() and not is_written_by_emulate(path):
+        raise InputError(f"{path}: is there and not an emulator; choose another place with -o")
 
 
 def _inputs(ds: xr.Dataset) -> tuple[dict[str, Floats], dict[str, str]]:

@@ -59,7 +59,7 @@ def integrated(
         kept = {name: why for name, why in kept.items() if level[name] in levels}
     if rows.design.imported:
         return None, dict.fromkeys(exponents, "its rows are imported") | kept
-    if rows.has_weights:
+    if rows.has_weights and not rows.has_next_rows:
         any_unit = rows.stands_for_any_unit
         learnt = {name for name in exponents if not any_unit or inputs.laws[name].level == SHARED}
         kept |= dict.fromkeys(learnt, "inspections have changed its law")

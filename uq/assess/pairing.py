@@ -38,7 +38,7 @@ class Pairing(Enum):
     ROWS_SAME = "Both results have the same rows."
     REPLICATES = "The studies share a seed: replicates with the same number are paired."
     ROWS_IMPORTED = "The imported rows are the same: rows with the same number are paired."
-    WEIGHTED = "Inspections have weighted the rows, so these intervals are conservative."
+    WEIGHTED = "The rows have weights, so these intervals are conservative."
     UNKNOWN_IMPORTED = (
         "How the imported rows were drawn is unknown, so these intervals are conservative."
     )

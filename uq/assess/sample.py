@@ -189,7 +189,7 @@ class Sample(ABC):
             if other.reason
             else estimate
             for estimate, other in zip(
-                weighted_moments(element.values[kept], by.weights[kept], dependence),
+                weighted_moments(element.values[kept], by.weights[kept], dependence, by.most),
                 (plain.mean, plain.sd),
                 strict=True,
             )

@@ -191,6 +191,11 @@ def _named_twin(result: Result, model: str | None) -> _Twin:
 def _emulated(result: Result, path: Path) -> _Twin:
     """Return an emulator as twin: it predicts each row from rows of other parts."""
     emulator = emulator_at(path)
+    learnt, here = emulator.source["model"], result.dataset.attrs["model"]
+    if learnt != here:
+        raise InputError(
+            f"{path}: is an emulator of model '{learnt}', and the result is of '{here}'"
+        )
     data = read_toml(result.dataset.attrs["study"])
     data.pop("analysis", None)  # it may name outputs without an emulator
     constants = {

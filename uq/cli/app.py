@@ -22,7 +22,9 @@ GROUPS: dict[str, dict[Callable[..., Any], str]] = {
         studies.run: "uq run studies/exponential-wear.toml",
         results.status: "uq status results/exponential-wear.nc",
         results.extend: "uq extend results/exponential-wear.nc --samples 4000",
-        results.next_rows: "uq next-rows results/ishigami.nc -n 20 --output y",
+        results.next_rows: (
+            "uq next-rows results/vibrator-tolerances.nc -n 20 --output disphasing_angle"
+        ),
         results.rerun: "uq rerun results/exponential-wear.nc --failed",
     },
     "Read": {

@@ -35,6 +35,11 @@ def limits(
         if not output is above is below is None:
             raise InputError("uq: give --output with --above or --below, or limits with --any")
         option, key = ("--any", "any_of") if any_of else ("--all", "all_of")
+        if len(any_of or all_of) < 2:
+            raise InputError(
+                f'uq: give {option} at least twice, such as {option} "a > 3" {option} "b < 1";'
+                " a single limit is --output with --above or --below"
+            )
         return {key: [_limit(study, option, text) for text in any_of or all_of]}
     if output is None:
         raise InputError('uq: give an --output, or limits such as --any "a > 3" --any "b < 1"')

@@ -444,13 +444,16 @@ def _corrected(
         value = sum(estimate for estimate, _ in parts)
         below = sum((estimate - low) ** 2 for estimate, (low, _) in parts) ** 0.5
         above = sum((high - estimate) ** 2 for estimate, (_, high) in parts) ** 0.5
-        return max(value, 0.0), (max(value - below, 0.0), value + above)
+        # Masses are estimates: their sum may exceed that of all points.
+        ends = np.clip([value, value - below, value + above], 0.0, 1.0).tolist()
+        return ends[0], (ends[1], ends[2])
 
     plain += round(PLAIN * len(far))
     wrong = int((~hits[:first]).sum() + hits[first:].sum())
     value, ends = estimated(hits)
     failed_high = estimated(hits | lost)[1][1]
-    return ActiveEstimate(value, ends, failed_high, masses[0], doubt, len(hits), wrong, plain)
+    alone = min(masses[0], 1.0)
+    return ActiveEstimate(value, ends, failed_high, alone, doubt, len(hits), wrong, plain)
 
 
 def _mass(mass: float, contradicted: Mask, sign: float) -> tuple[float, Ends]:

@@ -166,7 +166,7 @@ def _study_of(result: Result, model: str | None) -> Study:
     ------
     InputError
     """
-    if not (result.has_rounds and result.has_independent_samples):
+    if not result.has_next_rows:
         result.refuse_if_weighted("next rows")
     if not result.has_independent_samples or result.is_nested or result.design.imported:
         raise InputError(
@@ -187,6 +187,8 @@ def _proposed(result: Result, study: Study, rows: int, aim: Aim) -> tuple[Floats
     """
     if not FOLDS <= rows <= POOL // 8:
         raise InputError(f"next rows: {rows} must be between {FOLDS} and {POOL // 8}")
+    if aim.near is not None and not np.isfinite(aim.near):
+        raise InputError(f"next rows: near {aim.near}: must be finite")
     if aim.output:
         find_element(study, aim.output)
     names, is_first = list(study.uncertain), not _rounds(result)
@@ -263,8 +265,15 @@ def _gain(result: Result, z: Floats, learnt: NDArray[np.intp], at: Floats, aim: 
     values = element.for_thresholds
     usable = np.isfinite(values[learnt]) & ~element.failed[learnt]
     kept = learnt[usable][-_MOST_LEARNT:]
-    if len(kept) < 2 * z.shape[1] + 10 or not np.ptp(values[kept]) > 0:
-        raise InputError(f"next rows: too few rows have different values of '{aim.output}'")
+    needed = 2 * z.shape[1] + 10
+    if len(kept) < needed:
+        part = "four fifths of " if len(learnt) < len(result) else ""
+        raise InputError(
+            f"next rows: too few rows: '{aim.output}' has a value in {len(kept)} of those to learn"
+            f" from, {part}{len(result)}, and {needed} are needed"
+        )
+    if not np.ptp(values[kept]) > 0:
+        raise InputError(f"next rows: '{aim.output}' has the same value in all rows to learn from")
     logarithmic = element.is_lifetime and values[kept].min() > 0
     if logarithmic and aim.near is not None and not aim.near > 0:
         raise InputError(f"next rows: {aim.near:g} is no life")

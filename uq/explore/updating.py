@@ -20,7 +20,7 @@ from uq.learning.posterior_checks import censoring, distrust
 from uq.learning.posterior_result import as_result, inspections_of, prior_of
 from uq.result.result import Result
 from uq.result.result_file import open_result
-from uq.result.weights import MODEL_ERROR, has_weights
+from uq.result.weights import MODEL_ERROR, has_next_rows, has_weights
 from uq.sampling.levels import SHARED
 from uq.study.definition import Study
 from uq.study.row_sampling import rows_per_sample
@@ -191,5 +191,6 @@ def learn(
 def _check_that_it_is_a_posterior(path: Path) -> None:
     """Refuse to overwrite a computed result: only it can be extended and verified."""
     remedy = "choose another output"
-    if not has_weights(open_result(path, remedy)):
+    ds = open_result(path, remedy)
+    if not has_weights(ds) or has_next_rows(ds):
         raise InputError(f"{path}: has rows that no inspections have weighted; {remedy}")

@@ -27,7 +27,8 @@ from uq.sampling.unit_cube import hashed, uniform
 from uq.stats.regressions import BEYOND, FOLDS, Predictor, Regression, Scale, ScaledInputs, scaled
 from uq.text.numbers import number
 
-FORMAT = 1
+FORMAT = 2
+_FORMAT, _CHECKSUM = "vibrolife_emulator", "sha256"  # the first members of a file
 VALUE, NEVER, CENSORED, UNDEFINED = "value", "never", "censored", "undefined"
 """States of an element of an output in a row."""
 
@@ -291,13 +292,15 @@ def emulator_at(path: Path) -> Emulator:
     Raises
     ------
     InputError
-        When it is not one.
+        When it is not one, or not as `text_of` wrote it.
     """
     file_there(path)
     try:
         plain = json.loads(path.read_text())
-        if plain.pop("vibrolife_emulator") != FORMAT:
+        if plain.pop(_FORMAT) != FORMAT:
             raise InputError(f"{path}: an emulator of another version of vibrolife; make it again")
+        if plain.pop(_CHECKSUM) != _checksum(plain):
+            raise InputError(f"{path}: was changed since 'uq emulate' wrote it; make it again")
         plain["scales"] = [Scale(*scale) for scale in plain["scales"]]
         plain["elements"] = {
             name: [_fit_of(fit) for fit in fits] for name, fits in plain["elements"].items()
@@ -307,14 +310,27 @@ def emulator_at(path: Path) -> Emulator:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except (ValueError, TypeError, KeyError, AttributeError):
         raise InputError(
-            f"{path}: is not an emulator; 'uq emulate RESULT -o {path.name}' makes one"
+            f"{path}: is not an emulator; 'uq emulate RESULT -o NEW.emulator' makes one"
         ) from None
 
 
 def text_of(emulator: Emulator) -> str:
-    """Return the text of the file of an emulator."""
+    """Return the text of the file of an emulator, with a checksum of its content."""
     declared = {field.name: getattr(emulator, field.name) for field in fields(emulator)}
-    return json.dumps({"vibrolife_emulator": FORMAT} | declared) + "\n"
+    return json.dumps({_FORMAT: FORMAT, _CHECKSUM: _checksum(declared)} | declared) + "\n"
+
+
+def is_written_by_emulate(path: Path) -> bool:
+    """Whether a file begins as `text_of` writes it, also by another version."""
+    try:
+        with path.open("rb") as file:
+            return file.read(100).startswith(f'{{"{_FORMAT}": '.encode())
+    except OSError:
+        return False
+
+
+def _checksum(declared: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(declared).encode()).hexdigest()
 
 
 def _fit_of(plain: list[Any]) -> ElementFit:

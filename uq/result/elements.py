@@ -19,11 +19,10 @@ from uq.result.nesting import is_nested, nesting_of
 from uq.result.result_file import failed, refuse_empty
 from uq.result.variables import outputs_of
 from uq.result.weights import (
-    INDEPENDENT_ROUNDS,
     LAW_INFLUENCE,
     LAW_TERMS,
-    ROUND,
     ROWS,
+    has_next_rows,
     has_rounds,
     largest_weight,
     row_weights,
@@ -105,7 +104,7 @@ def _shared_influence(rows: xr.Dataset, labels: NDArray[np.integer]) -> SharedIn
 def has_independent_samples(ds: xr.Dataset) -> bool:
     """Whether samples are independent, however many rows each has."""
     if has_rounds(ds):
-        return bool(ds[ROUND].attrs.get(INDEPENDENT_ROUNDS))
+        return has_next_rows(ds)
     design = DESIGNS[ds.attrs["design"]]
     return design.independent or (
         design.imported and study_of_result(ds.attrs["study"]).design.independent
@@ -304,7 +303,7 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
 
 
 def weights_of(rows: xr.Dataset) -> ImportanceWeights | None:
-    """Return the weights of rows from inspections, None if rows have no weights.
+    """Return the weights of rows with their quality, None if rows have no weights.
 
     Parameters
     ----------
@@ -316,6 +315,6 @@ def weights_of(rows: xr.Dataset) -> ImportanceWeights | None:
         return None
     of_samples = dependence_of(rows).sums_of_samples(weights)
     k, most = tail_shape(of_samples), largest_weight(rows)
-    is_bounded = has_rounds(rows) and has_independent_samples(rows)  # by the mixture's own density
+    is_bounded = has_next_rows(rows)  # by the mixture's own density
     k = min(k, 0.0) if is_bounded or is_negligible(most, len(of_samples)) else k
     return ImportanceWeights(weights, k, len(of_samples), effective_rows(of_samples), most)

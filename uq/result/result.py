@@ -36,6 +36,7 @@ from uq.result.nesting import (
 from uq.result.result_file import failed, file_of, model_option, open_result, refuse_empty, upgraded
 from uq.result.variables import outputs_of
 from uq.result.weights import (
+    has_next_rows,
     has_rounds,
     has_weights,
     refuse_if_weighted,
@@ -321,8 +322,13 @@ class Result:
 
     @property
     def has_weights(self) -> bool:
-        """Whether inspections have weighted the rows."""
+        """Whether inspections, or the choice of next rows, have weighted the rows."""
         return has_weights(self.dataset)
+
+    @property
+    def has_next_rows(self) -> bool:
+        """Whether rows have weights since 'uq extend --next' drew some of them."""
+        return has_next_rows(self.dataset)
 
     @property
     def has_rounds(self) -> bool:

@@ -57,13 +57,18 @@ _SAME = 1e-9  # relative difference of weights attributed to rounding
 
 
 def has_weights(ds: xr.Dataset) -> bool:
-    """Whether inspections have weighted the rows of a result."""
+    """Whether inspections, or the choice of next rows, have weighted the rows of a result."""
     return WEIGHT in ds.variables and ds[WEIGHT].attrs.get("role") == WEIGHT
 
 
 def has_rounds(ds: xr.Dataset) -> bool:
     """Whether a sampler has added rows to a design; replicates are then its repetitions."""
     return ROUND in ds.variables and ds[ROUND].attrs.get("role") == IMPORTANCE
+
+
+def has_next_rows(ds: xr.Dataset) -> bool:
+    """Whether rows have weights since 'uq extend --next' drew some of them."""
+    return has_rounds(ds) and bool(ds[ROUND].attrs.get(INDEPENDENT_ROUNDS))
 
 
 def row_weights(ds: xr.Dataset) -> Floats | None:
@@ -157,7 +162,7 @@ def refuse_if_weighted(ds: xr.Dataset, question: str) -> None:
 
 def weighted_by(ds: xr.Dataset) -> str:
     """Return what has weighted the rows of a result."""
-    if has_rounds(ds) and ds[ROUND].attrs.get(INDEPENDENT_ROUNDS):
+    if has_next_rows(ds):
         return "have weights ('uq extend --next')"
     return "inspections have weighted ('uq update')"
 

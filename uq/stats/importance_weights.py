@@ -16,6 +16,8 @@ DOUBTFUL = 0.7
 
 _NEGLIGIBLE = 1e-3
 _LITTLE = 0.01
+_BOUNDED = 10.0  # mean weights: the variance of weights that never exceed this is small
+_ENOUGH = 10.0  # effective rows
 _SAME = 1e-9  # relative difference up to which numbers are equal but for rounding
 
 
@@ -60,6 +62,8 @@ class ImportanceWeights(NamedTuple):
     @property
     def refusal(self) -> str:
         """Reason why the weights are unreliable; "" if they are reliable."""
+        if not self.impossible and is_bounded(self.most, self.effective):
+            return ""
         return self.impossible or refusal(self.k, self.rows)
 
 
@@ -114,6 +118,22 @@ def smoothed(
 def impossible_weights(rows: int, why: str) -> ImportanceWeights:
     """Return unit weights for rows that cannot be weighted, with the reason."""
     return ImportanceWeights(np.ones(rows), inf, rows, 0.0, impossible=why)
+
+
+def is_bounded(most: float, effective: float) -> bool:
+    """Whether the effective rows alone decide, as no row can weigh more than ten mean rows.
+
+    The largest weights lie at the bound then: a Pareto law fitted to them says nothing of heavier
+    ones, of which there are none.
+
+    Parameters
+    ----------
+    most : float
+        Upper limit of the weight of a row, for weights of mean 1.
+    effective : float
+        Kish's effective sample size.
+    """
+    return most <= _BOUNDED and effective > _ENOUGH
 
 
 def is_negligible(most: float, rows: int) -> bool:

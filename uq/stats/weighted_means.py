@@ -15,8 +15,8 @@ from uq.contract import Floats
 from uq.stats.dependent_rows import INDEPENDENT, Dependence
 from uq.stats.estimate import Estimate
 from uq.stats.importance_weights import (
-    HOPELESS,
     effective_rows,
+    is_bounded,
     is_negligible,
     largest_share,
     refusal,
@@ -114,6 +114,7 @@ def widened_to_binomial(
 
 
 EXACT = "exact: rows differ only in integrated inputs"
+_FEW_CARRY_IT = "too few rows carry the weight; many times the rows are required"
 
 
 def weighted_part_means(
@@ -290,9 +291,16 @@ def moments_of_rows(
 
 
 def weighted_moments(
-    values: Floats, weights: Floats, dependence: Dependence = INDEPENDENT
+    values: Floats, weights: Floats, dependence: Dependence = INDEPENDENT, most: float = inf
 ) -> tuple[Estimate, Estimate]:
     """Estimate mean and standard deviation if the weights are reliable.
+
+    Parameters
+    ----------
+    values, weights : ndarray, shape (n,)
+    dependence : Dependence, optional
+    most : float, optional
+        Upper limit of the weight of a row, for weights of mean 1.
 
     Returns
     -------
@@ -314,8 +322,9 @@ def weighted_moments(
     differ = tail_shape(of_samples) > -inf
     if differ and mean.has_interval:
         mean = _with_freedom_of_kurtosis(mean, weighted_part_means(values, weights, dependence))
+    differ &= not is_bounded(most, effective_rows(of_samples))
     why = too_large(largest_share(of_samples), len(of_samples)) if differ else ""
-    return if_reliable(mean, weights, dependence), Estimate(reason=why) if why else sd
+    return if_reliable(mean, weights, dependence, most), Estimate(reason=why) if why else sd
 
 
 def _with_freedom_of_kurtosis(mean: Estimate, part_means: Floats) -> Estimate:
@@ -338,7 +347,7 @@ def if_reliable(
     contributions: Floats,
     dependence: Dependence,
     most: float = inf,
-    hopeless: str = HOPELESS,
+    hopeless: str = _FEW_CARRY_IT,
 ) -> Estimate:
     """Return the estimate, or a missing estimate with the reason if its weights are unreliable.
 
@@ -354,7 +363,7 @@ def if_reliable(
         Reason to give if a larger sample would not help.
     """
     of_samples = dependence.sums_of_samples(np.abs(contributions))
-    if is_negligible(most, len(of_samples)):
+    if is_negligible(most, len(of_samples)) or is_bounded(most, effective_rows(of_samples)):
         return estimate
     why = refusal(tail_shape(of_samples), len(of_samples), hopeless)
     return Estimate(reason=why) if why else estimate

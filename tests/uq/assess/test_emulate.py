@@ -281,20 +281,66 @@ def test_the_command_shows_errors_and_json(uq, tmp_path, write_study):
         (("none.nc", "-o", "a.emulator"), "none.nc: no such file"),
         (("out.nc", "-o", "a.nc"), "a.nc: the file of an emulator ends in .emulator"),
         (("out.nc", "-o", "a.emulator", "--output", "z"), "no such output 'z'"),
+        (
+            ("out.nc", "-o", "study.emulator"),
+            "study.emulator: is there and not an emulator; choose another place with -o",
+        ),
     ],
 )
 def test_mistakes_are_one_line(uq, write_study, arguments, words):
     linear(samples=64).to_netcdf("out.nc") if arguments[0] == "out.nc" else None
+    Path("study.emulator").write_text("[study]")
     ended = uq("emulate", *arguments)
     assert ended.code == 2 and words in ended.err and ended.err.count("\n") == 1
+    assert Path("study.emulator").read_text() == "[study]"
+
+
+def test_an_emulator_is_replaced_also_one_of_another_version(tmp_path):
+    path = tmp_path / "linear.emulator"
+    api.emulate(linear(samples=64), path)
+    first = path.read_text()
+    path.write_text(first.replace('"vibrolife_emulator": 2', '"vibrolife_emulator": 1'))
+    api.emulate(linear(samples=64), path)
+    assert path.read_text() == first
 
 
 def test_a_file_that_is_none_is_one_line(tmp_path):
-    for text in ("", "{}", '{"vibrolife_emulator": 1}', "[1]"):
+    for text in ("", "{}", '{"vibrolife_emulator": 2}', "[1]"):
         path = tmp_path / "bad.emulator"
         path.write_text(text)
         with pytest.raises(InputError, match="bad.emulator: is not an emulator"):
             model_at(str(path))
+    result = tmp_path / "out.nc"
+    linear(samples=64).to_netcdf(result)
+    words = "out.nc: is not an emulator; 'uq emulate RESULT -o NEW.emulator' makes one"
+    with pytest.raises(InputError, match=words):
+        api.two_fidelities(result, emulator=result)
+
+
+def test_an_emulator_of_another_model_is_no_twin(waves):
+    words = "waves.emulator: is an emulator of model 'ishigami', and the result is of 'linear'$"
+    with pytest.raises(InputError, match=words):
+        api.two_fidelities(linear(samples=64), emulator=waves)
+
+
+def test_a_file_that_was_changed_or_is_of_another_version_is_one_line(waves, tmp_path):
+    path, text = tmp_path / "waves.emulator", waves.read_text()
+    learnt = json.loads(text)
+    digits = repr(learnt["x"][3][0])
+    assert text.count(digits) == 1
+    changed = f"{path}: was changed since 'uq emulate' wrote it; make it again"
+    for old, new, words in (
+        (digits, digits[:-1] + str((int(digits[-1]) + 1) % 10), changed),
+        ('"failed": 0', '"failed": 0.0', changed),
+        ('"failed": 0', '"failed": 0, "more": 0', changed),
+        ('{"vibrolife_emulator": 2', '{"vibrolife_emulator": 1', "of another version"),
+    ):
+        path.write_text(text.replace(old, new))
+        with pytest.raises(InputError, match=words) as refused:
+            model_at(str(path))
+        assert "\n" not in str(refused.value)
+    path.write_text(json.dumps(json.loads(text), indent=1))  # the same content
+    assert emulator_at(path) == emulator_at(waves)
 
 
 PAD = """

@@ -14,6 +14,7 @@ from wordings import sentence
 import uq as api
 from uq.cli.printing import print_json
 
+STUDIES = Path(__file__).parents[3] / "studies"
 GROUPS = {
     "Start": "models init simulate import schema serve",
     "Run": "plan run status extend next-rows rerun",
@@ -53,6 +54,13 @@ def test_the_help_of_a_verb_ends_with_an_example_that_parses(uq, verb):
     name, given, *arguments = shlex.split(example.partition(" > ")[0])
     assert (name, given, example.count("\n")) == ("uq", verb, 0)
     typer.main.get_command(app).commands[verb].make_context(verb, arguments)
+
+
+def test_the_example_of_next_rows_is_a_study_with_independent_rows(uq):
+    example = shlex.split(uq("next-rows", "--help").out.partition("  Example:\n")[2].strip())
+    study = api.load_study(STUDIES / f"{Path(example[2]).stem}.toml")
+    assert study.design.method == "monte-carlo"
+    assert example[example.index("--output") + 1] in study.analysis.outputs
 
 
 def test_no_argument_asks_what_to_do_next(uq, write_study, folder):

@@ -43,7 +43,8 @@ def test_several_limits_are_options(uq, write_study):
     for mistake, words in (
         (("--any", "y > 9", "--all", "y < 9.5"), "uq: give one of --any and --all"),
         (("--any", "y is 9", "--any", "y < 9.5"), "uq: --any 'y is 9' is not a limit"),
-        (("--any", "y > 9"), "rare event: any_of and all_of need at least two limits"),
+        (("--any", "y > 9"), 'uq: give --any at least twice, such as --any "a > 3" --any "b < 1"'),
+        (("--all", "y > 9"), 'uq: give --all at least twice, such as --all "a > 3" --all "b < 1"'),
         (("--any", "y > 9", "--any", "y < 1", "--output", "y"), "uq: give --output with --above"),
         (("--above", "9"), "uq: give an --output, or limits"),
     ):

@@ -158,6 +158,18 @@ def test_rows_without_a_value_count_as_outside_and_have_a_bound():
     assert covers(ds, truth) and float(ds["failed_high"]) > max(1 / 576, float(ds["high"]))
 
 
+@pytest.mark.parametrize(
+    ("of", "output", "threshold"),
+    [(branches(), "sum", -30.0), (linear(settings={"fail_above": 0.97}), "y", -5.0)],
+    ids=("certain", "certain where rows do not fail"),
+)
+def test_neither_a_probability_nor_its_interval_exceeds_one(of, output, threshold):
+    ds = rare_event(of, output, threshold, method="active", samples=150, workers=0)
+    assert 0.8 < interval(ds)[0] <= float(ds["probability"]) <= interval(ds)[1] <= 1
+    assert float(ds["emulated"]) <= 1
+    assert not float(ds["failed_high"]) > 1
+
+
 def test_the_bits_do_not_depend_on_workers():
     first, second = (
         rare_event(branches(), "sum", 4.0, method="active", samples=100, workers=workers)

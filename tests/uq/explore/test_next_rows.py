@@ -130,6 +130,8 @@ def test_extend_adds_them_in_rounds_with_weights(uq, tmp_path):
         (("--next", 20), "--next N needs -o NEW.nc"),
         (("--next", 2, "-o", "b.nc"), "--next"),
         (("--next", 20, "-o", "b.nc", "--output", "z"), "'z': no such output of model 'ishigami'"),
+        (("--next", 20, "-o", "b.nc", "--output", "y", "--near", "nan"), "near nan: must be"),
+        (("--next", 20, "-o", "b.nc", "--output", "y", "--near", "-inf"), "near -inf: must be"),
         ((), "add --samples N, or --next N -o NEW.nc"),
     ],
 )
@@ -138,6 +140,7 @@ def test_mistakes_are_one_line(uq, tmp_path, arguments, words):
     uq("run", tmp_path / "waves.toml", "-o", "a.nc", "--quiet")
     ended = uq("extend", "a.nc", *arguments)
     assert ended.code == 2 and words in ended.err and ended.err.count("\n") == 1
+    assert not list(tmp_path.glob("b*"))
 
 
 def test_dependent_rows_are_refused():
@@ -159,12 +162,79 @@ def test_no_row_is_proposed_twice():
     assert len(np.unique(scores, axis=0)) == 500
 
 
+WEAR = {
+    "study": {"name": "wear", "model": "exponential-wear"},
+    "fixed": {"depth": 2.5e-4},
+    "uncertain": {"rate": {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}},
+}
+MEAN_LIFE = 1e6 * np.exp(0.5**2 / 2)
+
+
+def worn_in_rounds(tmp_path, seed):
+    """Return a result of 80 rows and three rounds of 20 next ones."""
+    result = Result(computed(study_of(WEAR | design(80, seed))))
+    for number in range(3):
+        path = tmp_path / f"{seed}-{number}.nc"
+        result = Result(extend_by_next(result, 20, Aim("life"), path, None, RunOptions(workers=0)))
+    return path
+
+
+def test_the_mean_is_given_and_words_are_of_next_rows(uq, tmp_path):
+    path = worn_in_rounds(tmp_path, seed=0)
+    line = api.summary(path).loc["life"]
+    assert line["mean_low"] < MEAN_LIFE < line["mean_high"] < 1.3 * line["mean_low"]
+    card, full, numbers = (uq("summary", path, *by).out for by in ((), ("--full",), ("--json",)))
+    assert "no 95/95 life: the rows have weights ('uq extend --next')" in card
+    uq("report", path, "-o", "page.html")
+    page = (tmp_path / "page.html").read_text()
+    assert "The rows have weights, and a page needs rows of equal weight." in page
+    for text in (card, full, numbers, page):
+        assert not any(words in text for words in ("nspections", "other laws"))
+
+
+def test_an_update_does_not_replace_rows_that_no_inspection_has_weighted(uq, tmp_path):
+    path = worn_in_rounds(tmp_path, seed=1)
+    (tmp_path / "seen.csv").write_text("unit,output,kind,time\nA,life,survived,1e5\n")
+    (tmp_path / "wear.toml").write_text(as_text(WEAR | design(80)))
+    uq("run", tmp_path / "wear.toml", "-o", "a.nc", "--quiet")
+    ended = uq("update", "a.nc", tmp_path / "seen.csv", "-o", path)
+    assert "has rows that no inspections have weighted; choose another output" in ended.err
+    assert ended.code == 2 and ended.err.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_the_interval_of_the_mean_covers_after_three_rounds(tmp_path):
+    """Of 60 results all have a mean; some have a heavy tail, which has no interval."""
+    lines = [api.summary(worn_in_rounds(tmp_path, seed)).loc["life"] for seed in range(60)]
+    ends = [(line["mean_low"], line["mean_high"]) for line in lines if line["mean_high"] > 0]
+    held = [low < MEAN_LIFE < high for low, high in ends]
+    assert np.isfinite([line["mean"] for line in lines]).all() and len(held) > 50
+    assert np.mean(held) > 0.91
+
+
+def test_a_limit_that_is_no_number_is_one_line(uq, tmp_path):
+    (tmp_path / "waves.toml").write_text(as_text(TABLES | design(40)))
+    uq("run", tmp_path / "waves.toml", "-o", "a.nc", "--quiet")
+    for near in ("nan", "inf"):
+        ended = uq("next-rows", "a.nc", "--output", "y", "--near", near)
+        assert ended.code == 2 and f"next rows: near {near}: must be finite" in ended.err
+        with pytest.raises(InputError, match=f"near {near}: must be finite"):
+            api.next_rows("a.nc", 20, "y", near=float(near))
+
+
+def test_the_number_of_rows_that_an_output_needs_is_stated():
+    ds = waves(18)
+    words = r"'y' has a value in 1\d of those to learn from, four fifths of 18, and 16 are needed"
+    with pytest.raises(InputError, match=words):
+        api.next_rows(ds, 20, "y")
+    ds = waves(40)
+    ds["y"][:] = 1.0
+    with pytest.raises(InputError, match="next rows: 'y' has the same value in all rows to"):
+        api.next_rows(ds, 20, "y")
+
+
 def test_a_limit_that_no_life_has_is_one_line():
-    wear = {
-        "study": {"name": "wear", "model": "exponential-wear"},
-        "uncertain": {"rate": {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}},
-    }
-    ds = computed(study_of(wear | design(40)))
+    ds = computed(study_of(WEAR | design(40)))
     with pytest.raises(InputError, match="next rows: -1 is no life"):
         api.next_rows(ds, 20, "life", near=-1.0)
 

@@ -8,7 +8,7 @@ from learnt_studies import wear
 from scipy import special
 
 from uq.result.elements import dependence_of
-from uq.stats.importance_weights import smoothed, tail_shape
+from uq.stats.importance_weights import is_bounded, smoothed, tail_shape
 from uq.stats.weighted_means import weighted_moments, weighted_share
 
 
@@ -36,6 +36,18 @@ def test_a_tail_that_begins_amid_equal_weights_is_bounded_where_they_are():
     normal = np.random.default_rng(0).standard_normal(2000)
     in_steps = special.ndtr(np.round(-16 * (np.log(2) + 0.5 * normal) / 0.3) / 16)
     assert tail_shape(in_steps) < 0.3
+
+
+def test_weights_with_a_small_bound_need_no_law_of_pareto():
+    """As of rows of a mixture: many weigh the same, some next to nothing, some the most."""
+    rng = np.random.default_rng(1)
+    few = np.concatenate([rng.uniform(0, 0.5, 30), rng.uniform(1.1, 1.3, 100), np.full(10, 2.0)])
+    weights, values = few / few.mean(), rng.standard_normal(len(few))
+    assert tail_shape(weights) > 0.7
+    refused, allowed = (weighted_moments(values, weights, most=most) for most in (20.0, 2.1))
+    assert all(estimate.reason for estimate in refused)
+    assert all(estimate.has_interval and not estimate.reason for estimate in allowed)
+    assert not is_bounded(2.1, effective=9.0)
 
 
 def test_the_interval_of_a_weighted_mean_holds_the_truth():

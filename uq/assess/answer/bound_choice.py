@@ -24,6 +24,7 @@ from uq.assess.statistics.tolerance import tolerance
 from uq.assess.summary import Described
 from uq.result.elements import Element
 from uq.result.result import Result
+from uq.result.weights import weighted_by
 from uq.stats import estimate_json
 from uq.stats.estimate import NOTHING, Estimate
 from uq.study.file import AnalysisTable
@@ -194,6 +195,8 @@ def _why_no_bound(
         many = "more" if element.declared.success else "fewer"
         may = "may not " if element.declared.success else ""
         return f"{many} than {100 * (1 - coverage):.3g} % {may}{end_verb(element)}"
+    if result.has_next_rows:
+        return f"the rows {weighted_by(result.dataset)}"
     if result.has_weights:
         return "the rows are weighted by inspections"
     if result.is_nested:

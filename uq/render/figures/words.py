@@ -144,7 +144,7 @@ def row_counts(result: Result, chosen: Sequence[Element]) -> str:
         if most:
             counts.append(f"{'up to ' if len(chosen) > 1 else ''}{grouped(most)} {word}")
     if chosen[0].weights is not None:
-        counts.append("weighted by inspections")
+        counts.append("weighted" if result.has_next_rows else "weighted by inspections")
     return ", ".join(counts)
 
 

@@ -160,7 +160,9 @@ def _absence(count: int, total: int) -> str:
 def why_no_rows(findings: Findings) -> str:
     """Return the reason why a page cannot compute with the rows of a result; "" if it can."""
     if findings.result.has_weights:
-        return "Inspections have weighted the rows, and a page needs rows of equal weight."
+        by_inspections = not findings.result.has_next_rows
+        why = "Inspections have weighted the rows" if by_inspections else "The rows have weights"
+        return f"{why}, and a page needs rows of equal weight."
     if not len(findings.rows):
         return f"No row of design '{findings.result.design_name}' follows the laws of the inputs."
     if findings.result.is_field_record and not independent_inputs(findings.rows):

@@ -116,7 +116,7 @@ def inputs(findings: Findings, file: str) -> Iterator[Item]:
     laws, *correlations = input_tables(result)
     yield Item("Laws and their sources", tables=[laws])
     independent = [] if correlations else ["The laws are independent."]
-    if result.has_weights:
+    if result.has_weights and not result.has_next_rows:
         independent.append("Given the inspections, the inputs need not be independent.")
     yield Item("Dependence", text=independent, tables=correlations)
     levels = [
