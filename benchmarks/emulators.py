@@ -25,7 +25,7 @@ from uq.stats.control_variate import controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import mean_interval, share_interval
 from uq.stats.moments import moments
-from uq.stats.regressions import Predictor, regress, scale_of, scaled
+from uq.stats.regressions import FOLDS, Predictor, regress, scale_of, scaled
 
 ROWS = (100, 200, 400)
 NEW = 2000
@@ -258,7 +258,7 @@ def with_emulator(x, y, many, limit):
     kept, hits = np.ones(len(y), bool), y > limit
     controls = [np.stack([c, np.zeros(len(c))], axis=1) for c in (here, there)]
     return {
-        "mean": controlled_mean(y, kept, controls=controls[0], many=controls[1])[0],
+        "mean": controlled_mean(y, kept, controls=controls[0], many=controls[1], parts=FOLDS)[0],
         "P": controlled_share(hits, kept, control=here, many=there)[0],
         "refused": is_refused(regression),
     }

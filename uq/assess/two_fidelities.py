@@ -29,6 +29,7 @@ from uq.stats.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.stats.estimate import Estimate
 from uq.stats.intervals import FEW, mean_interval, share_interval
 from uq.stats.moments import moments
+from uq.stats.regressions import FOLDS
 from uq.study.changes import study_text
 from uq.study.definition import Study, study_from_text
 from uq.study.evaluate import evaluate
@@ -150,6 +151,7 @@ def with_twin(
     result.refuse_if_weighted("estimates with a twin")
     twin = _named_twin(result, model) if emulator is None else _emulated(result, Path(emulator))
     here, many = _here(twin, result), _many(twin, len(result))
+    parts = 1 if emulator is None else FOLDS
     outputs = [name for name in result.shown_outputs(result.analysis) if name != twin.name]
     by_element = {}
     for element in result.elements(outputs):
@@ -158,7 +160,7 @@ def with_twin(
             alone = control.output == twin.name and control.place.items() <= element.place.items()
             if same or alone:
                 thresholds = result.analysis.thresholds.get(element.output, ())
-                estimates = dict(_estimates(element, control, others, thresholds))
+                estimates = dict(_estimates(element, control, others, thresholds, parts))
                 by_element[element.name] = estimates
     return TwoFidelities(
         twin.name,
@@ -242,14 +244,18 @@ _SHARE = (controlled_share,), (share_of, share_interval)
 
 
 def _estimates(
-    element: Element, control: Element, many: Element, thresholds: Sequence[float]
+    element: Element, control: Element, many: Element, thresholds: Sequence[float], parts: int
 ) -> Iterator[tuple[str, ControlVariateEstimate]]:
     present, kept = element.present, ~element.failed
     if present.any() and not (element.never | element.censored).any():
         alone = moments(element.values[present]).mean
         if not alone.reason:
             controlled = controlled_mean(
-                element.values, present, controls=_filled(control), many=_filled(many)
+                element.values,
+                present,
+                controls=_filled(control),
+                many=_filled(many),
+                parts=parts,
             )
             yield "mean", ControlVariateEstimate(*controlled, alone)
     for threshold in thresholds:

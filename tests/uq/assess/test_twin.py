@@ -297,3 +297,18 @@ def test_the_interval_of_a_mean_covers_where_few_rows_decide_the_regression():
         estimate, _ = controlled_mean(np.exp(z), np.ones(100, bool), controls=here, many=many)
         inside += estimate.low <= np.exp(0.32) <= estimate.high
     assert inside >= 937  # 934 without allowing for outliers, 910 by the residuals of all rows
+
+
+def test_controls_learnt_from_the_rows_leave_the_freedom_of_a_part():
+    rng = np.random.default_rng(8)
+    values, many = rng.standard_normal(100), rng.standard_normal((5000, 1))
+    controls = (values + rng.standard_normal(100))[:, None]
+    kept = np.ones(100, bool)
+    widths = [
+        estimate.high - estimate.low
+        for parts in (1, 5)
+        for estimate, _ in [
+            controlled_mean(values, kept, controls=controls, many=many, parts=parts)
+        ]
+    ]
+    assert 1.04 < widths[1] / widths[0] < 1.07  # Student's quantiles of 18 and 98 degrees: 1.058
