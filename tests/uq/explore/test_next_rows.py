@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 from computed import as_text, computed, study_of
-from limit_states import PLANE
+from limit_states import PARTS, PLANE
 from scipy.special import ndtr
 
 import uq as api
 from uq.errors import InputError
 from uq.execution.options import RunOptions
 from uq.explore.next_rows import Aim, _proposed, _study_of, extend_by_next
+from uq.files.whole_files import write_result
 from uq.result.result import Result
 
 SIGNS = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
@@ -122,6 +123,17 @@ def test_extend_adds_them_in_rounds_with_weights(uq, tmp_path):
     again = uq("run", tmp_path / "waves.toml", "-o", "b.nc")
     assert "b.nc: has rows that have weights ('uq extend --next'); choose another" in again.err
     assert again.code == 2 and again.err.count("\n") == 1
+
+
+def test_rows_of_many_inputs_are_side_by_side(uq, tmp_path):
+    tables = {"study": {"name": "pulse", "model": "oscillator"}, "uncertain": PARTS} | design(40)
+    write_result(computed(study_of(tables, "limit_states:OSCILLATOR")), tmp_path / "a.nc")
+    shown = uq("next-rows", "a.nc", "-n", 8, "--model", "limit_states:OSCILLATOR")
+    assert shown.code == 0, shown.err
+    lines = [line.split() for line in shown.out.splitlines() if line]
+    assert [len(line) for line in lines if line[0] == "yield_displacement"] == [5, 5]
+    assert lines[0] == ["0", "1", "2", "3"]
+    assert all(len(line) <= 80 for line in shown.out.splitlines())
 
 
 @pytest.mark.parametrize(

@@ -58,6 +58,10 @@ def _aim(result: "Result", output: str, near: str | None) -> tuple[str, float | 
     return output, read_threshold("--near", near, output, unit)
 
 
+_ON_A_LINE = 4
+"""Numbers of a proposed row, or rows side by side."""
+
+
 def next_rows(
     result: given.ResultFile,
     number: Annotated[int, typer.Option("-n", "--rows", min=5, metavar="N", help="How many.")] = 20,
@@ -79,8 +83,15 @@ def next_rows(
     if json:
         printing.print_json({name: column.tolist() for name, column in table.items()})
         return
-    cells = [[f"{value:.6g}" for value in row] for row in table.to_numpy()]
-    printing.grid([(str(i), *row) for i, row in enumerate(cells)], header=("", *table.columns))
+    cells = [(str(i), *(f"{value:.6g}" for value in row)) for i, row in enumerate(table.to_numpy())]
+    if len(table.columns) <= _ON_A_LINE:
+        printing.grid(cells, header=("", *table.columns))
+    else:
+        for first in range(0, number, _ON_A_LINE):
+            numbers, *lines = zip(
+                ("", *table.columns), *cells[first : first + _ON_A_LINE], strict=True
+            )
+            printing.grid(lines, header=numbers)
     printing.note("weight: how much the row counts, against 1 of a row of the study")
 
 
