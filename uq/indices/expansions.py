@@ -190,6 +190,7 @@ def hdmr_indices(sample: DesignSample) -> Indices:
 
 _FOLDS = 5
 _UNEXPLAINED = 0.5  # largest share of the variance
+_VARIANCES = 2.0  # largest ratio of the variance by expansions and that of the rows
 _ROUNDING = 1e-12
 _LONG_TAIL = 5.0  # kurtosis of an output that grows with normal inputs
 
@@ -258,6 +259,11 @@ def chaos_indices(sample: DesignSample) -> Indices:
             f"polynomials leave {error.mean():.0%} of the variance of rows held out unexplained;"
             f" {_UNEXPLAINED:.0%} are the most"
         )
+    if not 1 / _VARIANCES < total.mean() < _VARIANCES:
+        raise RefusedError(
+            "expansions of parts of the rows and the rows themselves disagree on the variance by a"
+            f" factor of {total.mean():.2g}: too few rows are where the output varies most"
+        )
     explained.pop((), None)
     t = float(student(upper_probability(sample.confidence), n - 1))
     indices = {
@@ -272,7 +278,13 @@ def chaos_indices(sample: DesignSample) -> Indices:
         f"polynomial chaos leaves {100 * error.mean() / total.mean():.2g} % of the variance"
         f" unexplained, which the upper ends include ({100 * left.high:.2g} % at most)"
     )
-    return Indices(indices, (note,))
+    notes = [note]
+    if standard_moment(sample.values, 4) > _LONG_TAIL:
+        notes.append(
+            "few rows of a long tail hold much of the variance: where the output bends there, the"
+            " intervals may be too narrow; those of its logarithm are safer"
+        )
+    return Indices(indices, tuple(notes))
 
 
 def _standards(sample: DesignSample) -> list[tuple[Floats, tuple[bool, ...]]]:

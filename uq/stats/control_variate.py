@@ -35,7 +35,9 @@ def controlled_mean(
         The same quantities of other independent rows.
     parts : int
         Number of parts of the rows, if the controls of each were learnt from the others. As such
-        controls depend on each other, the interval has the degrees of freedom of a single part.
+        controls depend on each other, the interval has the degrees of freedom of a single part. It
+        allows for one more row that errs by the standard deviation of the values: what was learnt
+        is wrong where an output bends beyond all rows, and no row shows it.
 
     Returns
     -------
@@ -68,6 +70,7 @@ def controlled_mean(
     variance = np.mean(left**2) / n + np.var(many @ slope) / len(many)
     freedom = max(n / parts - 1 - k, 1.0)
     half = float(student(intervals.upper_probability(), freedom) * variance**0.5)
+    half += float(errors.std()) / n if parts > 1 else 0.0
     low, high = intervals.widened_for_outliers(0.0, (-half, half), left)
     return Estimate(value, value + low, value + high), reduction
 

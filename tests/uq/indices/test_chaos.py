@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.special import ndtri
+from scipy.special import ndtr, ndtri
 
 from uq.indices.expansions import chaos_indices
 from uq.indices.index import S1, S2, SHAPLEY, ST, RefusedError
@@ -64,6 +64,23 @@ def test_an_output_that_polynomials_do_not_explain_is_refused():
     noise = np.random.default_rng(3).random(60)
     with pytest.raises(RefusedError, match="polynomials leave 1..% of the variance of rows held"):
         chaos_indices(sample_of(lambda *x: noise, ("uniform",) * 4, 60, 1))
+
+
+def test_rows_that_do_not_show_the_variance_are_refused_and_long_tails_are_noted():
+    def reciprocal(a, b):
+        return 1 / (0.1 - np.log(ndtr(a))) + b  # of an exponential input
+
+    laws, noted, refused = ("normal",) * 2, 0, 0
+    for seed in range(30):
+        try:
+            indices = chaos_indices(sample_of(reciprocal, laws, 60, seed))
+        except RefusedError as refusal:
+            refused += "disagree on the variance by a factor of" in str(refusal)
+            continue
+        noted += "long tail" in " ".join(indices.notes)
+        for estimates in indices.values.values():
+            assert all(-0.5 < estimate.value < 1.5 for estimate in estimates.values())
+    assert refused > 0 and noted > 0
 
 
 @pytest.mark.parametrize("rows", [100, 300])
