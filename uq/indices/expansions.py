@@ -190,7 +190,7 @@ def hdmr_indices(sample: DesignSample) -> Indices:
 
 _FOLDS = 5
 _UNEXPLAINED = 0.5  # largest share of the variance
-_VARIANCES = 2.0  # largest ratio of the variance by expansions and that of the rows
+_VARIANCES = 3.0  # largest ratio of the variance by expansions and that of the rows
 _ROUNDING = 1e-12
 _LONG_TAIL = 5.0  # kurtosis of an output that grows with normal inputs
 
