@@ -189,7 +189,6 @@ def hdmr_indices(sample: DesignSample) -> Indices:
 
 
 _FOLDS = 5
-_UNEXPLAINED = 0.5  # largest share of the variance
 _VARIANCES = 3.0  # largest ratio of the variance by expansions and that of the rows
 _ROUNDING = 1e-12
 _LONG_TAIL = 5.0  # kurtosis of an output that grows with normal inputs
@@ -212,8 +211,7 @@ def chaos_indices(sample: DesignSample) -> Indices:
     Raises
     ------
     RefusedError
-        An input is discrete, or without a stated law, or the expansion explains less than half of
-        the variance.
+        An input is discrete, or without a stated law, or the expansion explains nothing.
 
     Notes
     -----
@@ -254,10 +252,9 @@ def chaos_indices(sample: DesignSample) -> Indices:
             explained.setdefault(inputs, np.zeros(n))[inside] = variance + 2 * values * rest
         sums = [explained[inputs][inside] for inputs in parts if inputs]
         total[inside] = np.sum(sums, axis=0) + error[inside]
-    if error.mean() > _UNEXPLAINED:
+    if error.mean() > 1:
         raise RefusedError(
-            f"polynomials leave {error.mean():.0%} of the variance of rows held out unexplained;"
-            f" {_UNEXPLAINED:.0%} are the most"
+            f"polynomials leave {error.mean():.0%} of the variance of rows held out unexplained"
         )
     if not 1 / _VARIANCES < total.mean() < _VARIANCES:
         raise RefusedError(

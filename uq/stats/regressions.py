@@ -6,6 +6,7 @@ A regression is kept as plain numbers, from which it predicts the same bits in a
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
+from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +28,7 @@ MOST_OF_PROCESS = 600
 """Largest number of rows of a Gaussian process, whose cost grows with their cube."""
 
 _FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estimated
+_NORM = 0.6  # of the degrees of a polynomial: below 1, fewer products
 _DEGREE = 16
 _DEGREE_OF_NORMAL = 4  # higher ones grow without a row to stop them
 _NUGGET = 0.01  # from which its estimate starts
@@ -123,7 +125,7 @@ def scaled(scales: list[Scale], x: Floats) -> Floats:
 def _basis(uniform: tuple[bool, ...]) -> Any:
     ot = openturns()
     factors = [ot.LegendreFactory() if flat else ot.HermiteFactory() for flat in uniform]
-    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(uniform), 0.6)
+    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(uniform), _NORM)
     enumerate_terms.setUpperBound(_degrees(uniform))
     return ot.OrthogonalProductPolynomialFactory(
         [ot.OrthogonalUniVariatePolynomialFamily(factor) for factor in factors], enumerate_terms
@@ -151,11 +153,11 @@ def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Fit:
     laws = [ot.Uniform(-1.0, 1.0) if flat else ot.Normal() for flat in uniform]
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
     results, most = [], 0
-    for degree in range(1, _DEGREE + 1):
-        if most < MOST_TERMS:  # to count the polynomials of many inputs takes minutes
-            with suppress(RuntimeError):  # all are counted
-                most = basis.getEnumerateFunction().getBasisSizeFromTotalDegree(degree)
-    most = min(most, MOST_TERMS)
+    terms = basis.getEnumerateFunction()
+    largest = (_DEGREE if all(uniform) else 2 * _DEGREE_OF_NORMAL) ** _NORM
+    available = min(MOST_TERMS, prod(degree + 1 for degree in _degrees(uniform)))
+    while most < available and np.sum(np.array(terms(most)) ** _NORM) < largest + 1e-9:
+        most += 1
     constant = {"terms": [0], "coefficients": [float(y.mean())], "error": float(y.var())}
     for size in sorted({min(most, int(len(y) / few)) for few in _ROWS_PER_TERM}):
         algorithm = ot.FunctionalChaosAlgorithm(
