@@ -216,7 +216,7 @@ def chaos_indices(sample: DesignSample) -> Indices:
     Notes
     -----
     The rows are divided into five parts. Inputs are scores of normal or uniform laws; polynomials
-    of normal ones have a degree of 4 at most, since higher ones grow beyond the rows, where nothing
+    of normal ones have a degree of 3 at most, since higher ones grow beyond the rows, where nothing
     corrects them. Uniform scores of all inputs are tried, too, unless the output has a long tail.
     The better expansion f of the rows of four parts [1]_ is a sum of
     uncorrelated components f_v, each of the inputs v alone. With r = y - f in the rows of the fifth

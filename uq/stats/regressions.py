@@ -30,7 +30,7 @@ MOST_OF_PROCESS = 600
 _FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estimated
 _NORM = 0.6  # of the degrees of a polynomial: below 1, fewer products
 _DEGREE = 16
-_DEGREE_OF_NORMAL = 4  # higher ones grow without a row to stop them
+_DEGREE_OF_NORMAL = 3  # higher ones grow without a row to stop them
 _NUGGET = 0.01  # from which its estimate starts
 _NUGGETS = (1e-6, 1e-4, 1e-2)  # with which a covariance is factorised in the end
 _ROWS_PER_TERM = (4.0, 2.0, 1.0, 0.5)  # among which terms are selected
@@ -154,7 +154,8 @@ def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Fit:
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
     results, most = [], 0
     terms = basis.getEnumerateFunction()
-    largest = (_DEGREE if all(uniform) else 2 * _DEGREE_OF_NORMAL) ** _NORM
+    # With a normal input, products of two inputs at most.
+    largest = _DEGREE**_NORM if all(uniform) else max(2.0, _DEGREE_OF_NORMAL**_NORM)
     available = min(MOST_TERMS, prod(degree + 1 for degree in _degrees(uniform)))
     while most < available and np.sum(np.array(terms(most)) ** _NORM) < largest + 1e-9:
         most += 1
