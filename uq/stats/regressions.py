@@ -6,7 +6,6 @@ A regression is kept as plain numbers, from which it predicts the same bits in a
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
-from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +29,7 @@ MOST_OF_PROCESS = 600
 _FOR_SCALES = 150  # rows from which the scales of a Gaussian process are estimated
 _NORM = 0.6  # of the degrees of a polynomial: below 1, fewer products
 _DEGREE = 16
-_DEGREE_OF_NORMAL = 3  # higher ones grow without a row to stop them
+_LARGEST_OF_NORMAL = 2.0  # cubes, and products of two: higher ones grow beyond all rows
 _NUGGET = 0.01  # from which its estimate starts
 _NUGGETS = (1e-6, 1e-4, 1e-2)  # with which a covariance is factorised in the end
 _ROWS_PER_TERM = (4.0, 2.0, 1.0, 0.5)  # among which terms are selected
@@ -126,15 +125,9 @@ def _basis(uniform: tuple[bool, ...]) -> Any:
     ot = openturns()
     factors = [ot.LegendreFactory() if flat else ot.HermiteFactory() for flat in uniform]
     enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(uniform), _NORM)
-    enumerate_terms.setUpperBound(_degrees(uniform))
     return ot.OrthogonalProductPolynomialFactory(
         [ot.OrthogonalUniVariatePolynomialFamily(factor) for factor in factors], enumerate_terms
     )
-
-
-def _degrees(uniform: tuple[bool, ...]) -> list[int]:
-    """Return the largest degree in each input."""
-    return [_DEGREE if flat else _DEGREE_OF_NORMAL for flat in uniform]
 
 
 def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Fit:
@@ -154,10 +147,8 @@ def fit_chaos(z: Floats, y: Floats, uniform: tuple[bool, ...]) -> Fit:
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
     results, most = [], 0
     terms = basis.getEnumerateFunction()
-    # With a normal input, products of two inputs at most.
-    largest = _DEGREE**_NORM if all(uniform) else max(2.0, _DEGREE_OF_NORMAL**_NORM)
-    available = min(MOST_TERMS, prod(degree + 1 for degree in _degrees(uniform)))
-    while most < available and np.sum(np.array(terms(most)) ** _NORM) < largest + 1e-9:
+    largest = _DEGREE**_NORM if all(uniform) else _LARGEST_OF_NORMAL
+    while most < MOST_TERMS and np.sum(np.array(terms(most)) ** _NORM) < largest + 1e-9:
         most += 1
     constant = {"terms": [0], "coefficients": [float(y.mean())], "error": float(y.var())}
     for size in sorted({min(most, int(len(y) / few)) for few in _ROWS_PER_TERM}):
